@@ -1,17 +1,28 @@
 #include "cli/command_line.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 
 namespace aftershade::cli {
 
-std::vector<std::string> own_arguments() {
-    const std::string text = read_text_file("/proc/self/cmdline", ExitCode::effect);
+namespace {
+
+/// What the program reads from its environment.
+constexpr std::array<std::string_view, 5> kVariables{"AFTERSHADE_ALLOW_PATH", "AFTERSHADE_BACKEND",
+                                                     "AFTERSHADE_CACHE", "AFTERSHADE_DATA",
+                                                     "AFTERSHADE_PLUGIN_PATH"};
+
+/// Words that a zero ends.
+std::vector<std::string> words_of(const char* file) {
+    const std::string text = read_text_file(file, ExitCode::effect);
     std::vector<std::string> words;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\0', at), text.size());
@@ -19,6 +30,12 @@ std::vector<std::string> own_arguments() {
         at = end + 1;
     }
     return words;
+}
+
+}  // namespace
+
+std::vector<std::string> own_arguments() {
+    return words_of("/proc/self/cmdline");
 }
 
 std::vector<std::string> with_options(const std::vector<std::string>& words,
@@ -29,6 +46,10 @@ std::vector<std::string> with_options(const std::vector<std::string>& words,
     for (const auto& [name, value] : options)
         if (!value.empty()) result.insert(result.end(), {name, value});
     for (std::size_t i = kBegin; i < words.size(); ++i) {
+        if (words[i] == "--") {  // what follows are names
+            result.insert(result.end(), words.begin() + std::ptrdiff_t(i), words.end());
+            break;
+        }
         const auto is_word = [&](const OptionValue& option) { return words[i] == option.name; };
         const auto has_value = [&](const OptionValue& option) {
             return words[i].starts_with(option.name + "=");
@@ -42,6 +63,23 @@ std::vector<std::string> with_options(const std::vector<std::string>& words,
     if (!result.empty() && result[0] == "/proc/self/exe")
         result[0] = std::filesystem::read_symlink(result[0], failure).string();
     return result;
+}
+
+std::map<std::string, std::string> own_variables() {
+    std::map<std::string, std::string> variables;
+    for (const std::string& entry : words_of("/proc/self/environ"))
+        for (const std::string_view name : kVariables)
+            if (const std::size_t end = name.size(); entry.starts_with(name) && entry[end] == '=')
+                variables[std::string(name)] = entry.substr(end + 1);
+    return variables;
+}
+
+std::string command_to_repeat(const std::vector<OptionValue>& options) {
+    std::error_code failure;
+    const std::filesystem::path folder = std::filesystem::current_path(failure);
+    std::string text = failure ? "" : printed_command({"cd", folder.string()}) + " && ";
+    for (const auto& [name, value] : own_variables()) text += name + "=" + printed_command({value}) + " ";
+    return text + printed_command(with_options(own_arguments(), options));
 }
 
 }  // namespace aftershade::cli

@@ -1,6 +1,7 @@
 // The command line of this process, as a person would type it.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,12 @@ struct OptionValue {
 /// `words` with these options in place of those that were there; they come right after the verb, words[1].
 std::vector<std::string> with_options(const std::vector<std::string>& words,
                                       const std::vector<OptionValue>& options);
+
+/// The variables of the environment that the program reads, as this process was started with them.
+std::map<std::string, std::string> own_variables();
+
+/// The command that does again what this process was started for, with these options in place of those that
+/// were there; right in any shell, whatever its folder and its variables.
+std::string command_to_repeat(const std::vector<OptionValue>& options = {});
 
 }  // namespace aftershade::cli

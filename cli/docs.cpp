@@ -14,6 +14,7 @@
 #include "cli/man_page.h"
 #include "cli/verbs.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/side_file.h"
 #include "framework/effect/describe.h"
 #include "framework/scene/scene_schema.h"
 
@@ -96,7 +97,7 @@ ExitCode docs(const DocsOptions& options) {
         const fs::path file = (fs::path(options.folder) / name).lexically_normal();
         if (fs::exists(file, failure) && read_text_file(file, ExitCode::usage) == text) continue;
         same = false;
-        if (!options.check) write_text_file(file, text);
+        if (!options.check) write_text_file(path_below(file.parent_path(), file.filename()), text);
         fmt::print("{}{}\n", file.string(),
                    options.check ? ": is not what is declared; run aftershade docs" : "");
     }
@@ -112,8 +113,8 @@ ExitCode docs(const DocsOptions& options) {
 
 ExitCode write_man_pages(const CLI::App& program, const fs::path& folder) {
     for (const auto& [name, text] : man_pages(command_tree(program), AFTERSHADE_VERSION)) {
-        prepare_output_folder(folder / name);
-        write_text_file(folder / name, text);
+        prepare_output_folder(path_below(folder, name));
+        write_text_file(path_below(folder, name), text);
         fmt::print("{}\n", (folder / name).string());
     }
     return ExitCode::done;

@@ -16,6 +16,7 @@
 #include "framework/batch/report_page.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/input_files.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
@@ -32,7 +33,7 @@ void print_head(const GoldenReportContext& context) {
 }
 
 fs::path write_page(const fs::path& report, fs::path page, double limit_mb) {
-    if (page.empty()) page = report / "index.html";
+    if (page.empty()) page = path_below(report, "index.html");
     write_report_page(report, page, {std::uint64_t(limit_mb * 1024 * 1024)});
     return page;
 }
@@ -47,13 +48,15 @@ bool may_replace(const fs::path& file, std::string_view begin) {
 /// A run that does not end must not leave the figures of an earlier one beside its own pictures.
 void remove_old_reports(const GoldenOptions& options) {
     std::error_code failure;
-    if (!options.junit.empty() && fs::is_regular_file(options.junit, failure)) fs::remove(options.junit, failure);
+    if (!options.junit.empty() && fs::is_regular_file(options.junit, failure))
+        fs::remove(options.junit, failure);
     if (options.report.empty()) return;
     if (!fs::remove(fs::path(options.report) / "report.json", failure)) return;
     fs::remove(fs::path(options.report) / "index.html", failure);
 }
 
-/// Reports of an earlier run would be taken for this one's. Faults of writing are not worth more than the cause.
+/// Reports of an earlier run would be taken for this one's. Faults of writing are not worth more than the
+/// cause.
 void write_early_end(const GoldenOptions& options, const std::string& message, int exit_code) {
     const GoldenEarlyEnd end{options.suite, message, exit_code};
     try {
@@ -63,7 +66,10 @@ void write_early_end(const GoldenOptions& options, const std::string& message, i
         if (options.report.empty() || !may_replace(json, "{\n  \"aftershade\"") || !may_replace(page, "<!"))
             return;
         fs::create_directories(report);
-        write_text_file(json, early_json_of(end).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        path_below(report, page.filename());
+        path_below(report, json.filename());
+        write_text_file(
+            json, early_json_of(end).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
         write_text_file(page, early_page_of(end));
     } catch (const std::exception& error) {
         std::cerr << "aftershade: warning: " << error.what() << "\n";
@@ -83,7 +89,7 @@ void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result
     const std::string json =
         json_of(result, context).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     if (!options.report.empty()) {
-        write_text_file(fs::path(options.report) / "report.json", json);
+        write_text_file(path_below(options.report, "report.json"), json);
         std::cerr << "report: " << write_page(options.report, "", options.page_limit_mb).string() << "\n";
     }
     if (options.json) std::fwrite(json.data(), 1, json.size(), stdout);
@@ -128,7 +134,7 @@ ExitCode run_prepared(const GoldenOptions& options, const GoldenSetup& setup) {
     remove_old_reports(options);
     if (!options.report.empty()) {
         std::error_code failure;
-        fs::create_directories(fs::path(options.report) / "images", failure);
+        fs::create_directories(options.report, failure);
         if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
     }
     print_head(setup.context);
@@ -195,7 +201,7 @@ ExitCode approve(const GoldenOptions& options) {
     approve_options.add = options.add;
     approve_options.renew_sidecars = options.renew_sidecars;
     approve_options.command =
-        shell_line({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options;
+        printed_command({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options;
     approve_options.approver = approver_of(options, setup.suite.folder());
     approve_options.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
     const GoldenApproval approval = approve_goldens(

@@ -124,7 +124,7 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     for (const std::string& path : options.effect_paths) same.insert(same.end(), {"--effect-path", path});
     for (const std::string& path : options.plugin_paths) same.insert(same.end(), {"--plugin-path", path});
     if (!options.backend.empty()) same.insert(same.end(), {"--backend", options.backend});
-    setup.context.with_options = same.empty() ? "" : " " + shell_line(same);
+    setup.context.with_options = same.empty() ? "" : " " + printed_command(same);
     setup.context.commit = line_of_git(setup.suite.folder(), {"rev-parse", "HEAD"});
     return setup;
 }

@@ -11,6 +11,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 
 extern char** environ;
@@ -56,7 +57,8 @@ void require_graph_writer(const std::string& path) {
 void write_graph(const std::string& path, const std::string& dot) {
     if (!path.ends_with(".svg")) return write_text_file(path, dot);
     AtomicFile picture(path);
-    const AtomicFile source(path + ".dot");  // never committed, so it goes
+    const std::filesystem::path file(path + ".dot");
+    const AtomicFile source(path_below(file.parent_path(), file.filename()));  // never committed, so it goes
     write_text(source.temporary_path(), dot);
     run_dot(source.temporary_path().string(), picture.temporary_path().string());
     picture.commit();

@@ -92,7 +92,9 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
             inspection.capture->warnings.push_back(difference);
         inspection.cryptomattes = reader.cryptomattes(frame);
     } catch (const Error& error) {
-        // The files are sound, but what they mean is not known: no profile, several, no such view.
+        // The files are sound, but what they mean is not known: no profile, several, no such view; or of the
+        // profile all but a Cryptomatte's manifest.
+        if (inspection.capture) inspection.warnings.emplace_back(error.what());
         inspection.no_profile_code = error.exit_code();
         inspection.no_profile_message = error.what();
         inspection.no_profile_reason = without_path(error.what(), inspection.file);
@@ -131,17 +133,18 @@ void warn_of_stored_values(Inspection& inspection) {
             for (const auto& [channel, statistics, reason, readable] : part.channels) {
                 if (!statistics || std::ranges::find(names, channel.name) == names.end()) continue;
                 if (statistics->nan > 0)
-                    inspection.warnings.push_back(fmt::format(
-                        "{} (role '{}') has {} NaN{}; run --on-nan fail leaves such frames out", channel.name,
-                        role, statistics->nan,
-                        kind == RoleKind::distance ? ", read as no hit"
-                        : kind == RoleKind::motion ? ", read as no motion data"
-                                                   : ""));
+                    inspection.warnings.push_back(
+                        fmt::format("{} (role '{}') has {} NaN{}; run --on-nan fail leaves such frames out",
+                                    channel.name, role, statistics->nan,
+                                    kind == RoleKind::distance ? ", read as no hit"
+                                    : kind == RoleKind::motion ? ", read as no motion data"
+                                                               : ""));
                 if (kind == RoleKind::distance && channel.type == PixelType::half && statistics->infinite > 0)
-                    inspection.warnings.push_back(fmt::format(
-                        "{} (role '{}') is half and has {} infinite values: a half ends at 65504, so far depth "
-                        "and marks such as 1e10 look like no hit; have the producer write float",
-                        channel.name, role, statistics->infinite));
+                    inspection.warnings.push_back(
+                        fmt::format("{} (role '{}') is half and has {} infinite values: a half ends at "
+                                    "65504, so far depth "
+                                    "and marks such as 1e10 look like no hit; have the producer write float",
+                                    channel.name, role, statistics->infinite));
             }
     }
 }
@@ -165,7 +168,8 @@ void warn_of_normals(const CaptureReader& reader, Inspection& inspection) {
 
 /// Whether the depth is one of the position's channels, which then shows nothing of it.
 bool is_of_position(const CaptureHeader& capture, const std::string& depth, const std::string& position) {
-    const auto of_depth = capture.role_channels.find(depth), of_position = capture.role_channels.find(position);
+    const auto of_depth = capture.role_channels.find(depth),
+               of_position = capture.role_channels.find(position);
     if (of_depth == capture.role_channels.end() || of_position == capture.role_channels.end()) return false;
     return std::ranges::find_first_of(of_depth->second, of_position->second) != of_depth->second.end();
 }
@@ -208,7 +212,9 @@ void require_what_was_asked(const Sequence& sequence, const Inspection& inspecti
 
 /// "" is the only Cryptomatte, or the one of objects.
 void add_coverage(const std::string& name, const CaptureReader& reader, Inspection& inspection) {
-    if (!inspection.capture || inspection.cryptomattes.empty())
+    if (!inspection.no_profile_message.empty())
+        throw Error(inspection.no_profile_code, inspection.no_profile_message);
+    if (inspection.cryptomattes.empty())
         throw Error(ExitCode::capture, inspection.file.string() + ": has no Cryptomatte");
     const int frame = inspection.capture->frame;
     inspection.coverage_of = reader.cryptomatte_name(frame, name);

@@ -1,6 +1,8 @@
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -100,6 +102,30 @@ void use_one_cache_folder() {
     setenv("MESA_SHADER_CACHE_DIR", std::filesystem::absolute(folder, failure).c_str(), kKeepAnExistingOne);
 }
 
+/// A stream that is closed would lend its number to the next file, which would then get what is printed.
+/// Nothing can be written to the one in the place of standard output; what standard error does not take is
+/// lost.
+void hold_standard_streams() {
+    for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(number, F_GETFD) < 0) open("/dev/null", number == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+    const cookie_io_functions_t functions{nullptr,
+                                          [](void*, const char* text, std::size_t count) {
+                                              for (std::size_t done = 0; done < count;) {
+                                                  const ssize_t written =
+                                                      write(STDERR_FILENO, text + done, count - done);
+                                                  if (written < 0 && errno != EINTR) break;
+                                                  done += std::size_t(std::max<ssize_t>(written, 0));
+                                              }
+                                              return ssize_t(count);
+                                          },
+                                          nullptr, nullptr};
+    // fmt::print throws where its stream takes nothing.
+    if (std::FILE* const lossy = fopencookie(nullptr, "w", functions)) {
+        std::setvbuf(lossy, nullptr, _IONBF, 0);
+        stderr = lossy;
+    }
+}
+
 bool stdout_is_whole() {
     std::cout.flush();
     return std::fflush(stdout) == 0 && std::cout && std::ferror(stdout) == 0;
@@ -114,6 +140,7 @@ std::string stdout_fault(int number) {
 int main(int argc, char** argv) {
     if (argc == 2 && std::string_view(argv[1]) == aftershade::cli::kNativeHostWord)
         return aftershade::serve_native_code(aftershade::kNativeDescriptor);
+    hold_standard_streams();
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     use_one_cache_folder();
@@ -173,7 +200,8 @@ int main(int argc, char** argv) {
         // So fmt::print reports a stream that takes nothing.
         const auto* system = dynamic_cast<const std::system_error*>(&error);
         if (system && std::ferror(stdout)) return fail_for_stdout(system->code().value());
-        return fail(ExitCode::effect,
-                    (std::string("a fault of the program itself: ") + error.what() + "; please report it").c_str());
+        return fail(
+            ExitCode::effect,
+            (std::string("a fault of the program itself: ") + error.what() + "; please report it").c_str());
     }
 }

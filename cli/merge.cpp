@@ -25,27 +25,33 @@ struct MergeArguments {
     int tasks = 0;  ///< 0: as many as there are reports
 };
 
+bool is_same(const fs::path& a, const fs::path& b) {
+    std::error_code absent;
+    return fs::equivalent(a, b, absent);
+}
+
 /// The files meant: each as it is named; of a folder, those of its tasks.
-std::vector<fs::path> report_files(const MergeArguments& options) {
-    std::vector<fs::path> files;
+std::vector<TaskReport> report_files(const MergeArguments& options) {
+    std::vector<TaskReport> files;
     for (const std::string& name : options.reports) {
         if (!fs::is_directory(name)) {
-            files.emplace_back(name);
+            files.push_back({"", name});
         } else if (options.tasks > 0) {
             for (int task = 1; task <= options.tasks; ++task)
-                files.push_back(fs::path(name) / (task_name(task) + ".json"));
+                files.push_back({name, task_name(task) + ".json"});
         } else {
             std::set<fs::path> sorted;
             for (const auto& entry : fs::directory_iterator(name))
-                if (entry.path().extension() == ".json") sorted.insert(entry.path());
-            files.insert(files.end(), sorted.begin(), sorted.end());
+                if (entry.path().extension() == ".json" && !is_same(entry.path(), options.output))
+                    sorted.insert(entry.path().filename());
+            for (const fs::path& file : sorted) files.push_back({name, file});
         }
     }
     return files;
 }
 
 ExitCode merge(const MergeArguments& options) {
-    const std::vector<fs::path> files = report_files(options);
+    const std::vector<TaskReport> files = report_files(options);
     if (files.empty()) throw Error(ExitCode::capture, options.reports.front() + ": holds no report (.json)");
     const MergedReport merged = merge_reports(files);
     write_text_file(options.output, merged_report_json(merged));

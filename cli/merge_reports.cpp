@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/side_file.h"
 
 namespace aftershade::cli {
 
@@ -17,11 +19,20 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uintmax_t kMostReportBytes = std::uintmax_t(1) << 30;
 
+/// A frame's number that is none.
+struct UnlikelyFrame {
+    std::string text;
+};
+
 /// Throws Json::exception where something is missing or of another type.
 void add_frames(const Json& report, std::map<int, FrameEvent>& frames) {
     for (const Json& entry : report.at("frames")) {
         FrameEvent event;
-        event.frame = entry.at("frame").get<int>();
+        const Json& number = entry.at("frame");
+        constexpr int kMost = 999'999'999;  // as in a file's name
+        if (!number.is_number_integer() || number < -kMost || number > kMost)
+            throw UnlikelyFrame{number.dump()};
+        event.frame = number.get<int>();
         event.outcome = entry.at("outcome").get<std::string>();
         event.seconds = entry.value("seconds", 0.0);
         event.message = entry.value("message", "");
@@ -30,20 +41,34 @@ void add_frames(const Json& report, std::map<int, FrameEvent>& frames) {
 }
 
 /// What keeps the file from being a report; "" where nothing does, and its content has been added.
-std::string add_report(const std::filesystem::path& file, BatchSummary& batch,
-                       std::map<int, FrameEvent>& frames) {
+std::string add_report(const TaskReport& file, BatchSummary& batch, std::map<int, FrameEvent>& frames,
+                       std::map<int, TaskReport>& owners) {
     std::string fault;
-    const std::string text = read_regular_file(file, kMostReportBytes, fault);
+    const std::string text = file.folder.empty()
+                                 ? read_regular_file(file.name, kMostReportBytes, fault)
+                                 : read_file_below(file.folder, file.name, kMostReportBytes, fault);
     if (!fault.empty()) return fault;
     try {
         const Json report = Json::parse(text);
         if (report.at("aftershade_report").get<int>() != 1) return "is a report of another version";
         std::map<int, FrameEvent> added;
         add_frames(report, added);
+        std::vector<int> twice;
+        for (const auto& [frame, event] : added)
+            if (const auto owner = owners.find(frame);
+                owner != owners.end() && !file.folder.empty() && owner->second.folder == file.folder)
+                twice.push_back(frame);
+        if (!twice.empty())
+            return "has the frames " + format_frame_range(twice) + " of " +
+                   owners.at(twice.front()).path().string() +
+                   ", too (remove the one that is not of this run)";
+        for (const auto& [frame, event] : added) owners[frame] = file;
         batch.look = report.value("look", batch.look);
         batch.capture = report.value("capture", batch.capture);
         batch.seconds += report.at("seconds").get<double>();
         for (auto& [frame, event] : added) frames[frame] = std::move(event);
+    } catch (const UnlikelyFrame& frame) {
+        return "has a frame " + frame.text + ", which is not a whole number of at most 9 digits";
     } catch (const Json::exception&) {
         return "is not a report of run --report";
     }
@@ -52,13 +77,14 @@ std::string add_report(const std::filesystem::path& file, BatchSummary& batch,
 
 }  // namespace
 
-MergedReport merge_reports(const std::vector<std::filesystem::path>& files) {
+MergedReport merge_reports(const std::vector<TaskReport>& files) {
     MergedReport merged;
     merged.tasks = int(files.size());
     std::map<int, FrameEvent> frames;
-    for (const std::filesystem::path& file : files)
-        if (const std::string why = add_report(file, merged.batch, frames); !why.empty())
-            merged.missing.push_back({file.string(), why});
+    std::map<int, TaskReport> owners;
+    for (const TaskReport& file : files)
+        if (const std::string why = add_report(file, merged.batch, frames, owners); !why.empty())
+            merged.missing.push_back({file.path().string(), why});
     for (auto& [frame, event] : frames) merged.batch.frames.push_back(std::move(event));
     const bool whole = merged.missing.empty() && count_outcome(merged.batch.frames, "failed") == 0 &&
                        count_outcome(merged.batch.frames, "not run") == 0;

@@ -9,6 +9,12 @@
 
 namespace aftershade::cli {
 
+struct TaskReport {
+    std::filesystem::path folder;  ///< that the user named, with the reports of a run's tasks; "" for none
+    std::filesystem::path name;    ///< in it; without one as the user named it
+    std::filesystem::path path() const { return folder / name; }
+};
+
 struct MissingReport {
     std::string file;
     std::string why;  ///< as a message ends
@@ -20,9 +26,10 @@ struct MergedReport {
     std::vector<MissingReport> missing;  ///< also those that are not reports
 };
 
-/// A frame that several reports name is as the last of them has it. The exit code is `partial` where a frame
+/// A frame that several reports name is as the last of them has it; tasks divide their frames, so of one
+/// folder the second report that names a frame does not count. The exit code is `partial` where a frame
 /// failed or was not run, or a report is missing.
-MergedReport merge_reports(const std::vector<std::filesystem::path>& files);
+MergedReport merge_reports(const std::vector<TaskReport>& files);
 
 /// A report of `run --report` with "tasks" and "missing_reports" besides.
 std::string merged_report_json(const MergedReport& report);

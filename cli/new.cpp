@@ -27,9 +27,12 @@ ExitCode make(const NewOptions& options) {
     const fs::path folder = fs::path(options.folder) / options.id;
     std::error_code failure;
     if (const fs::path path = options.id; path.has_parent_path() && is_snake_case(path.filename().string()))
-        diagnostics.error({"ID"}, "'" + options.id + "' is a path; the folder has an option of its own: aftershade new " +
-                                      path.filename().string() + " --path " + shell_line({path.parent_path().string()}));
-    else if (!is_snake_case(options.id)) diagnostics.error({"ID"}, "'" + options.id + "' " + kMustBeSnakeCase);
+        diagnostics.error({"ID"}, "'" + options.id +
+                                      "' is a path; the folder has an option of its own: aftershade new " +
+                                      path.filename().string() + " --path " +
+                                      printed_command({path.parent_path().string()}));
+    else if (!is_snake_case(options.id))
+        diagnostics.error({"ID"}, "'" + options.id + "' " + kMustBeSnakeCase);
     else if (shipped.contains(options.id))
         diagnostics.error({"ID"}, "an effect that comes with Aftershade is called '" + options.id + "'");
     else if (fs::exists(folder, failure)) diagnostics.error({"ID"}, folder.string() + " is there already");
@@ -37,8 +40,8 @@ ExitCode make(const NewOptions& options) {
     for (const auto& [file, lines] : make_effect(options.folder, options.id))
         fmt::print("{}: {} lines\n", file.string(), lines);
     fmt::print("Run it:   aftershade run {} CAPTURE --effect-path {} -o out.png\n",
-               shell_line({(folder / "look.json").string()}), shell_line({options.folder}));
-    fmt::print("Check it: aftershade check {}\n", shell_line({folder.string()}));
+               printed_command({(folder / "look.json").string()}), printed_command({options.folder}));
+    fmt::print("Check it: aftershade check {}\n", printed_command({folder.string()}));
     return ExitCode::done;
 }
 

@@ -37,11 +37,9 @@ void print_plan(const ResumableRun& run) {
 
 ResumeOptions options_of(const ResumeArguments& arguments, const ResumeNeeds& needs, std::size_t frames) {
     ResumeOptions options;
-    if (arguments.overwrite) options.overwrite = "--overwrite renders every frame";
-    else if (!needs.everything.empty()) options.overwrite = needs.everything + " needs every frame";
+    if (!needs.everything.empty()) options.overwrite = needs.everything + " renders every frame";
     else if (!arguments.keeps_journal(frames))
-        options.overwrite = arguments.no_journal ? "--no-journal renders every frame"
-                                                 : "a run of one frame renders it, unless --resume is given";
+        options.overwrite = "a run of one frame renders it, unless --resume is given";
     options.checkpoint_frames = arguments.checkpoint_frames;
     options.needs_last = needs.last_frame;
     return options;
@@ -77,7 +75,7 @@ ExitCode run_resumable(const ResumeArguments& arguments, const ResumeNeeds& need
     std::list<RunLock> locks;
     if (!arguments.dry_run)
         for (const std::string& pattern : source.outputs.patterns) {
-            locks.emplace_back(pattern, frames, shell_line(own_arguments()));
+            locks.emplace_back(pattern, frames, printed_command(own_arguments()));
             if (!locks.back().is_held() && needs.says)
                 fmt::print(stderr,
                            "{}: the file system has no locks: take care that no other run writes "

@@ -145,6 +145,28 @@ CheckedRun checked_run(const RunArguments& options) {
     return run;
 }
 
+/// Warns of what the pieces of a run lack: history where they begin in the middle of a shot, changes of color
+/// in layers.
+void print_lacks(const CheckedRun& run, const CaptureReader& reader, const std::vector<JobPiece>& pieces) {
+    const Pipeline& pipeline = run.bound->pipeline;
+    std::vector<std::string> texts = stale_layers_texts(pipeline, run.sequence, reader);
+    for (const JobPiece& piece : pieces) {
+        if (!pipeline.has_history() || !run.settings.history_in.empty() || piece.warmup_frames > 0 ||
+            piece.frames.empty())
+            continue;
+        const int first = piece.frames.front();
+        const std::string before = std::to_string(first - 1);
+        texts.push_back(
+            lost_history_text(pipeline, run.sequence, reader, first,
+                              first == run.share.run.frames.front()
+                                  ? "run the frames up to " + before +
+                                        " with --history-out FILE, and these with --history-in FILE"
+                                  : "leave --jobs out, or set --warmup"));
+    }
+    for (const std::string& text : texts)
+        if (!text.empty()) std::cerr << "aftershade: warning: " << printable(text) << "\n";
+}
+
 /// Renders in this process.
 ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureReader& reader,
                   const std::vector<std::filesystem::path>& profile_documents,
@@ -168,12 +190,8 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     };
     run.settings.natives = {&natives, &status};
     const Pipeline& pipeline = run.bound->pipeline;
-    if (run.settings.warmup_frames == 0 && !options.jobs.is_worker())
-        if (const auto lost = lost_history_text(pipeline, run.sequence, reader, run.settings); !lost.empty())
-            std::cerr << "aftershade: warning: " << printable(lost) << "\n";
     if (!options.jobs.is_worker())
-        for (const std::string& stale : stale_layers_texts(pipeline, run.sequence, reader))
-            std::cerr << "aftershade: warning: " << printable(stale) << "\n";
+        print_lacks(run, reader, {{run.settings.frames, run.settings.warmup_frames}});
     const auto end_context = options.watch ? std::function<void()>() : [&] { made.reset(); };
     const RunSession session{options,          status,      run.sequence,
                              reader,           context,     end_context,
@@ -219,8 +237,10 @@ ExitCode run(const RunArguments& options) {
         return ExitCode::done;
     }
     prepare_outputs(options, run.outputs, run.sequence);
-    if (options.jobs.wants_workers())
+    if (options.jobs.wants_workers()) {
+        print_lacks(run, reader, plan_jobs(run.share.run, run.share.workers));
         return run_by_workers(options, run.share.run, run.share.workers, run.bound->pipeline, progress, stop);
+    }
     if (const auto code = run_in_worker(options.plugins, run.bound->pipeline.has_foreign())) return *code;
     return run_here(options, run, reader, profile_documents, stop);
 }

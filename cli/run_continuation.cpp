@@ -1,54 +1,71 @@
 #include "cli/run_continuation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
-#include "framework/capture/frame_range.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
 
-std::string continuation_text(const std::vector<std::string>& command, const RunOptions& run,
-                              const RunReport& report) {
-    if (report.frames_left.empty()) return "";
-    std::vector<int> frames = report.frames_left;
-    std::vector<OptionValue> options{{"--frames", ""}};
-    std::string why;
-    if (report.history_saved) options.push_back({"--history-in", run.history_out.string()});
-    const bool begun = frames.size() < run.frames.size();
-    if (begun && !report.history_saved && (report.history_begin || !run.history_in.empty())) {
-        auto from = run.frames.begin();
-        if (report.history_begin) {
-            from = std::ranges::find(run.frames, *report.history_begin);
-            options.push_back({"--history-in", ""});  // of before this shot
-        }
-        frames.assign(from, run.frames.end());
-        why = " from where the history began, which was not kept (--history-out keeps it)";
-    }
-    options.front().value = format_frame_range(frames);
-    return "interrupted after " + std::to_string(report.frames_done) + " of " +
-           std::to_string(run.frames.size()) + " frames; to resume" + why + ":\n  " +
-           shell_line(with_options(command, options)) + "\n";
+namespace {
+
+std::string interruption_text(const RunArguments& run, const Interruption& end) {
+    const std::string count = counted(std::size_t(end.frames), "frame");
+    std::string text = "interrupted after " + std::to_string(end.done) + " of " + count;
+    if (end.is_complete) return text + "; nothing is left to do";
+    if (end.done == end.frames) text += ", before --history-out or --graph was written";
+    text += "; to resume";
+    if (const std::string option = run.needs_every_frame(); !option.empty())
+        text += ", with every frame rendered again (" + option + ")";
+    else if (end.has_history)
+        text += std::string(", from the ") +
+                (run.resume.checkpoint_frames > 0 ? "last checkpoint or the " : "") +
+                "beginning of the shot, since history cannot start later (frames that are done are rendered "
+                "again, but not written)";
+    return text + ":";
+}
+
+/// In another shell the variables that number a farm's tasks are not there.
+std::string resume_command(const std::string& chunk) {
+    std::vector<OptionValue> options;
+    Diagnostics faults;
+    if (const auto part = parse_chunk(
+            chunk, [](const char* name) { return std::getenv(name); }, faults))
+        options.push_back({"--chunk", std::to_string(part->index + 1) + "/" + std::to_string(part->count)});
+    return command_to_repeat(options);
+}
+
+}  // namespace
+
+void print_interruption(ProgressStyle style, const RunArguments& run, const Interruption& end) {
+    const std::string text = interruption_text(run, end);
+    const std::string command = end.is_complete ? "" : resume_command(run.jobs.chunk);
+    const nlohmann::ordered_json event = {{"event", "interrupted"}, {"message", text}, {"command", command}};
+    std::cerr << (style == ProgressStyle::json ? event.dump()
+                  : command.empty()            ? text
+                                               : text + "\n  " + command)
+              << "\n";
 }
 
 std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence, const CaptureReader& reader,
-                              const RunOptions& run) {
-    if (!pipeline.has_history() || !run.history_in.empty() || run.frames.empty()) return "";
-    const int first = run.frames.front();
+                              int first, const std::string& remedy) {
     const bool begins_shot = std::ranges::find(sequence.cuts, first) != sequence.cuts.end();
     if (begins_shot || !sequence.files.has_frame() || !reader.has_frame(sequence.file_number(first - 1)))
         return "";
     std::vector<std::string> steps;
     for (const PipelineStep& step : pipeline.steps)
         if (step.manifest->has_history()) steps.push_back(step.name);
-    const std::string number = std::to_string(first);
-    return "frame " + number + ": the history of " + list_of_names(steps, "and") +
-           " restarts here, although frame " + std::to_string(first - 1) +
-           " is there; this frame and those after it differ from those of an uncut run (run the frames up "
-           "to " +
-           std::to_string(first - 1) + " with --history-out FILE, and these with --history-in FILE)";
+    return fmt::format(
+        "frame {}: the history of {} restarts here, although frame {} is there; this frame and "
+        "those after it differ from those of an uncut run ({})",
+        first, list_of_names(steps, "and"), first - 1, remedy);
 }
 
 std::vector<std::string> stale_layers_texts(const Pipeline& pipeline, const Sequence& sequence,

@@ -5,22 +5,29 @@
 #include <string>
 #include <vector>
 
+#include "cli/run_options.h"
+#include "cli/run_report.h"
 #include "framework/capture/capture.h"
 #include "framework/pipeline/pipeline.h"
-#include "framework/pipeline/run.h"
 
 namespace aftershade::cli {
 
-/// The message after an interrupt: how far the run came, and the command that does the rest, in a line of
-/// its own. With history that was not saved, the rest begins where the history began, so that its pictures
-/// are those of an uncut run. "" where nothing is left.
-std::string continuation_text(const std::vector<std::string>& command, const RunOptions& run,
-                              const RunReport& report);
+/// How far an interrupted run came.
+struct Interruption {
+    int done = 0;              ///< frames that are finished, by earlier runs too
+    int frames = 0;            ///< that the run was to write
+    bool is_complete = false;  ///< nothing is left
+    bool has_history = false;
+};
 
-/// A warning where the first frame is not the first of its shot and there is no history to continue from; ""
-/// if all is well, or if the look has no history.
+/// Says so, with the command that does the rest in a line of its own, last: the run's own command, since the
+/// journal has what is done and where history can start.
+void print_interruption(ProgressStyle style, const RunArguments& run, const Interruption& end);
+
+/// A warning where `first`, which begins a run of frames without history, is not the first of its shot; "" if
+/// it is. The pipeline has history.
 std::string lost_history_text(const Pipeline& pipeline, const Sequence& sequence, const CaptureReader& reader,
-                              const RunOptions& run);
+                              int first, const std::string& remedy);
 
 /// Warnings where the capture has layers and a step reads them after others have changed the picture's color;
 /// none if the first frame cannot be read.

@@ -165,6 +165,15 @@ bool RunArguments::streams() const {
     return std::ranges::find(outputs, kStandardOutput) != outputs.end();
 }
 
+std::string RunArguments::needs_every_frame() const {
+    return resume.overwrite          ? "--overwrite"
+           : resume.no_journal       ? "--no-journal"
+           : streams()               ? "-o -"
+           : audit                   ? "--audit"
+           : !telemetry_plot.empty() ? "--telemetry-plot"
+                                     : "";
+}
+
 bool RunArguments::changes_window() const {
     return parse_scale(scale) != 1 || !region.empty();
 }

@@ -59,6 +59,8 @@ struct RunArguments {
 
     /// Whether frames go to standard output.
     bool streams() const;
+    /// The option that makes each run render every frame, current or not; "" for none.
+    std::string needs_every_frame() const;
     /// Whether outputs have other pixels than the source.
     bool changes_window() const;
 };

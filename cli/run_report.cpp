@@ -83,6 +83,13 @@ std::string warning_line(ProgressStyle style, const std::string& message) {
     return Json{{"event", "warning"}, {"message", text}}.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+void print_path(std::string_view path) {
+    fmt::print("{}\n", path);
+    if (std::fflush(stdout) != 0)
+        throw Error(ExitCode::output,
+                    std::string("standard output cannot be written: ") + std::strerror(errno));
+}
+
 std::string rate_text(std::size_t done, std::size_t count, double elapsed_s) {
     return fmt::format("{:.3g} frames/s, {} left", double(done) / elapsed_s,
                        duration_text(elapsed_s / double(done) * double(count - done)));
@@ -163,10 +170,7 @@ RunObserver RunReporter::observer() {
     observer.frame_started = [this](const Capture& capture) { begin_frame(capture); };
     observer.file_written = [this](const std::filesystem::path& path) {
         line_.clear();
-        fmt::print("{}\n", path.string());
-        if (std::fflush(stdout) != 0)
-            throw Error(ExitCode::output,
-                        std::string("standard output cannot be written: ") + std::strerror(errno));
+        print_path(path.string());
     };
     observer.frame_failed = [this](const std::string& message) {
         say("failed", "aftershade: error: " + message);

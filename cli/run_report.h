@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "framework/pipeline/run.h"
 
@@ -28,6 +29,9 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
 
 /// "aftershade: warning: ..." or {"event": "warning", "message": ...}
 std::string warning_line(ProgressStyle style, const std::string& message);
+
+/// A line of stdout, at once. Throws Error(ExitCode::output).
+void print_path(std::string_view path);
 
 /// "12.5 frames/s, 48 s left": of `count` frames that many are done.
 std::string rate_text(std::size_t done, std::size_t count, double elapsed_s);

@@ -131,10 +131,13 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
             << "-o -: the stream ends before frame " << report.failures.front().frame
             << ", since a gap would shift the frames behind it; --missing hold repeats a frame where the "
                "file of the next one is not there\n";
-    if (report.interrupted && !session.arguments.watch)
-        std::cerr << continuation_text(own_arguments(), settings, report);
     if (settings.trace) write_text_file(session.arguments.trace, trace.json());
     write_extras(session.arguments, report);
+    if (report.interrupted && !session.arguments.watch && !session.arguments.jobs.is_worker())
+        print_interruption(
+            session.progress, session.arguments,
+            {report.frames_done + report.frames_current,
+             int(session.run.frames.size()) - session.run.warmup_frames, false, pipeline.has_history()});
     return report.exit_code();
 }
 
@@ -178,8 +181,7 @@ ExitCode render_stale(const RunSession& session, const BoundLook& bound, const s
                                    session.profiles,     gl.renderer + ", " + gl.version,
                                    data_path() / "glsl", session.run.natives.registry};
     ResumeNeeds needs;
-    if (arguments.audit) needs.everything = "--audit";
-    if (!arguments.telemetry_plot.empty()) needs.everything = "--telemetry-plot";
+    needs.everything = arguments.needs_every_frame();
     needs.last_frame = !arguments.graph.empty();
     needs.says = session.progress != ProgressStyle::none;
     std::vector<int> current;

@@ -10,6 +10,7 @@
 
 #include "cli/batch_report.h"
 #include "cli/command_line.h"
+#include "cli/run_continuation.h"
 #include "framework/batch/run_jobs.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
@@ -24,13 +25,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::vector<int> frames_of(const std::vector<FrameEvent>& events, const std::string& outcome) {
-    std::vector<int> frames;
-    for (const FrameEvent& event : events)
-        if (event.outcome == outcome) frames.push_back(event.frame);
-    return frames;
-}
-
 /// Prints what workers say, each line once, and how far the run is.
 class WorkersReporter {
 public:
@@ -41,8 +35,7 @@ public:
         JobListener listener;
         listener.on_stdout = [this](std::string_view line) {
             line_.clear();
-            fmt::print("{}\n", line);
-            std::fflush(stdout);
+            print_path(line);
         };
         listener.on_stderr = [this](std::string_view line) {
             // Every worker says the same of what all frames have in common.
@@ -61,8 +54,8 @@ public:
         for (const std::string& warning : objects_.unmatched())
             fmt::print(stderr, "{}\n", warning_line(style_, warning));
         if (style_ == ProgressStyle::none || style_ == ProgressStyle::json) return;
-        const std::size_t done = frames_of(report.frames, "done").size();
-        const std::size_t current = frames_of(report.frames, "current").size();
+        const int done = count_outcome(report.frames, "done");
+        const int current = count_outcome(report.frames, "current");
         if (current > 0)
             fmt::print(stderr, "{} {} current\n", current, current == 1 ? "frame was" : "frames were");
         fmt::print(stderr, "{} of {} frames in {:.2f} s by {} {}; {:.2f} frames/s\n", done, frame_count_,
@@ -99,25 +92,25 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-/// This process's command without what is its own.
-std::vector<std::string> worker_command(const RunArguments& arguments, std::size_t frames) {
-    std::vector<std::string> command = with_options(own_arguments(), {{"--jobs", ""},
-                                                                      {"--frame-timeout", ""},
-                                                                      {"--max-memory", ""},
-                                                                      {"--report", ""},
-                                                                      {"--progress", "none"}});
+/// This process's command without what is its own. Frames are ranges: a word of a command line has at most
+/// 128 KiB (execve(2), MAX_ARG_STRLEN).
+std::vector<std::string> worker_command(const RunArguments& arguments, const JobPiece& piece,
+                                        std::size_t frames, int threads) {
+    std::vector<std::string> command =
+        with_options(own_arguments(), {{"--jobs", ""},
+                                       {"--frame-timeout", ""},
+                                       {"--max-memory", ""},
+                                       {"--report", ""},
+                                       {"--progress", "none"},
+                                       {"--worker-frames", format_frame_range(piece.frames)},
+                                       {"--worker-warmup", std::to_string(piece.warmup_frames)},
+                                       {"--worker-threads", std::to_string(threads)}});
     std::erase(command, "--stop-on-error");
     // A worker of one frame keeps the journal that the run keeps.
-    if (arguments.resume.keeps_journal(frames) && !arguments.resume.resume) command.emplace_back("--resume");
+    if (arguments.resume.keeps_journal(frames) && !arguments.resume.resume)
+        command.insert(command.begin() + 2, "--resume");
     command[0] = "/proc/self/exe";
     return command;
-}
-
-/// Frames as ranges: a word of a command line has at most 128 KiB (execve(2), MAX_ARG_STRLEN).
-std::vector<std::string> words_for(const JobPiece& piece, int threads) {
-    return {"--worker-frames",  format_frame_range(piece.frames),
-            "--worker-warmup",  std::to_string(piece.warmup_frames),
-            "--worker-threads", std::to_string(threads)};
 }
 
 /// Killed workers leave temporary files, and their lines in the locks of the outputs. A lock of the same
@@ -128,18 +121,11 @@ void clear_after_workers(const RunArguments& arguments, const std::vector<int>& 
         for (const int frame : frames)
             folders.insert(std::filesystem::path(FramePattern(pattern).path(frame)).parent_path());
         if (arguments.resume.keeps_journal(frames.size())) try {
-                RunLock(pattern, frames, shell_line(own_arguments()));
+                RunLock(pattern, frames, printed_command(own_arguments()));
             } catch (const Error&) {
             }
     }
     for (const std::filesystem::path& folder : folders) remove_stale_temporaries(folder);
-}
-
-std::string continuation(const JobsReport& report) {
-    const std::vector<int> left = frames_of(report.frames, "not run");
-    if (left.empty()) return "";
-    return "interrupted; to resume:\n  " +
-           shell_line(with_options(own_arguments(), {{"--frames", format_frame_range(left)}})) + "\n";
 }
 
 }  // namespace
@@ -168,11 +154,10 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     const auto start = Clock::now();
     JobOptions options;
     options.pieces = plan_jobs(frames, workers);
-    options.command = worker_command(arguments, frames.count());
     options.warmup_frames = frames.has_history ? frames.warmup_frames : 0;
     options.threads = std::max(1, allotted_cores() / std::max(1, int(options.pieces.size())));
-    options.frame_arguments = [threads = options.threads](const JobPiece& piece) {
-        return words_for(piece, threads);
+    options.command = [&](const JobPiece& piece) {
+        return worker_command(arguments, piece, frames.count(), options.threads);
     };
     if (arguments.jobs.frame_timeout_s > 0)
         options.frame_timeout = std::chrono::duration<double>(arguments.jobs.frame_timeout_s);
@@ -181,15 +166,26 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     if (pipeline.has_foreign()) options.resident_bytes = foreign_memory_bytes() / options.pieces.size();
     options.stop_on_error = arguments.jobs.stop_on_error;
     WorkersReporter reporter(progress, frames.count(), pipeline);
-    const JobsReport report = run_jobs(options, reporter.listener(), stop);
-    clear_after_workers(arguments, {frames.frames.begin() + frames.lead_frames, frames.frames.end()});
+    const std::vector<int> written(frames.frames.begin() + frames.lead_frames, frames.frames.end());
+    JobsReport report;
+    try {
+        report = run_jobs(options, reporter.listener(), stop);
+    } catch (...) {
+        clear_after_workers(arguments, written);
+        throw;
+    }
+    clear_after_workers(arguments, written);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     reporter.finish(report, options.pieces.size(), seconds);
-    if (report.interrupted) fmt::print(stderr, "{}", continuation(report));
     if (!arguments.jobs.report.empty())
         write_text_file(arguments.jobs.report,
                         report_json({arguments.look, arguments.capture.capture, report.frames, seconds,
                                      report.exit_code, "", "", report.error}));
+    if (report.interrupted)
+        print_interruption(
+            progress, arguments,
+            {count_outcome(report.frames, "done") + count_outcome(report.frames, "current"),
+             int(report.frames.size()), count_outcome(report.frames, "not run") == 0, frames.has_history});
     return report.exit_code;
 }
 

@@ -41,8 +41,8 @@ std::string slip_hint(const std::vector<std::string>& words, const std::vector<s
     const auto verb = std::ranges::find_first_of(words, verbs);
     if (verb != words.begin() && verb != words.end() && words.front().starts_with("-")) {
         const std::vector<std::string> before(words.begin(), verb), after(verb + 1, words.end());
-        return "options come after the command: aftershade " + *verb + " " + shell_line(after) +
-               (after.empty() ? "" : " ") + shell_line(before);
+        return "options come after the command: aftershade " + *verb + " " + printed_command(after) +
+               (after.empty() ? "" : " ") + printed_command(before);
     }
     for (const std::string& word : words)
         if (word.starts_with("-") && !word.starts_with("--") && is_file_name(word))
@@ -55,7 +55,8 @@ std::string slip_hint(const std::vector<std::string>& words, const std::vector<s
                pictures.front() + (words.front() == "run" ? " -o out.exr" : "");
     if ((takes_look || words.front() == "inspect") && pictures.size() > 1)
         if (const std::string pattern = frame_pattern(pictures.front()); !pattern.empty())
-            return "a sequence is one pattern, in quotes, so that the shell does not expand it: '" + pattern + "'";
+            return "a sequence is one pattern, in quotes, so that the shell does not expand it: '" + pattern +
+                   "'";
     return "";
 }
 

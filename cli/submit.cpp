@@ -3,14 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "cli/bound_look.h"
+#include "cli/command_line.h"
 #include "cli/frame_gaps.h"
 #include "cli/job_options.h"
 #include "cli/run_inputs.h"
@@ -21,6 +20,7 @@
 #include "framework/batch/farm_job.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 
 namespace aftershade::cli {
@@ -104,13 +104,11 @@ int task_count(const SubmitArguments& options, const JobFrames& run) {
 
 /// What the program reads from its environment here, and shall there.
 std::map<std::string, std::string> environment_of(const SubmitArguments& options) {
-    std::set<std::string> names{"AFTERSHADE_BACKEND", "AFTERSHADE_CACHE", "AFTERSHADE_DATA",
-                                "AFTERSHADE_PLUGIN_PATH"};
+    std::map<std::string, std::string> environment = own_variables();
     // Folders of this machine are not those of an image.
-    if (options.farm == "kubernetes") names = {"AFTERSHADE_BACKEND"};
-    std::map<std::string, std::string> environment;
-    for (const std::string& name : names)
-        if (const char* value = std::getenv(name.c_str())) environment[name] = value;
+    if (options.farm == "kubernetes")
+        std::erase_if(environment,
+                      [](const auto& variable) { return variable.first != "AFTERSHADE_BACKEND"; });
     return environment;
 }
 
@@ -143,13 +141,11 @@ FarmJob farm_job(const SubmitArguments& options, const RunArguments& parsed, con
 
 void write_job(const FarmJob& job, const FarmFiles& files) {
     std::error_code failure;
-    for (const char* folder : {"reports", "history", "logs"}) {
-        fs::create_directories(job.folder / folder, failure);
-        if (failure)
-            throw Error(ExitCode::output,
-                        (job.folder / folder).string() + ": cannot be made: " + failure.message());
-    }
-    for (const FarmFile& file : files.files) write_text_file(job.folder / file.name, file.text);
+    fs::create_directories(job.folder, failure);
+    if (failure)
+        throw Error(ExitCode::output, job.folder.string() + ": cannot be made: " + failure.message());
+    for (const char* folder : {"reports", "history", "logs"}) make_folder_below(job.folder, folder);
+    for (const FarmFile& file : files.files) write_text_file(path_below(job.folder, file.name), file.text);
 }
 
 std::string division_text(const SubmitArguments& options, const JobFrames& run, const FarmJob& job) {
@@ -187,7 +183,7 @@ ExitCode submit(const SubmitArguments& options) {
     write_job(job, files);
     std::cerr << division_text(options, *frames, job);
     for (const std::string& remark : files.remarks) std::cerr << "note: " << remark << "\n";
-    std::cout << shell_line(files.submit) << "\n";
+    std::cout << printed_command(files.submit) << "\n";
     return ExitCode::done;
 }
 

@@ -14,6 +14,7 @@
 #include "framework/capture/frame_range.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/document.h"
+#include "framework/core/path_bounds.h"
 #include "framework/core/text.h"
 
 namespace aftershade {
@@ -77,7 +78,8 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     }
     const auto text = [&](const char* key) {
         const auto found = json.find(key);
-        return found != json.end() && found->is_string() ? printable(found->get<std::string>()) : std::string();
+        return found != json.end() && found->is_string() ? printable(found->get<std::string>())
+                                                         : std::string();
     };
     GoldenSidecar sidecar;
     sidecar.environment = {text("backend"), text("renderer"), text("version"), text("cpu"), false};
@@ -129,15 +131,19 @@ std::string GoldenEnvironment::difference(const GoldenEnvironment& other) const 
 GoldenEnvironment environment_of(const gpu::ContextInfo& info) {
     // OSMesa and EGL are two ways to one software renderer.
     const gpu::Backend backend = info.software ? gpu::Backend::software : info.backend;
-    return {std::string(gpu::backend_name(backend)), info.renderer, info.version,
-            cpu_model(), info.software, info.software ? cpu_instructions() : ""};
+    return {std::string(gpu::backend_name(backend)), info.renderer, info.version, cpu_model(), info.software,
+            info.software ? cpu_instructions() : ""};
 }
 
 Json json_of(const GoldenEnvironment& environment) {
-    return {{"backend", environment.backend},  {"renderer", environment.renderer},
-            {"version", environment.version},  {"mesa", environment.mesa()},
-            {"llvm", environment.llvm()},      {"cpu", environment.cpu},
-            {"instructions", environment.instructions}, {"software", environment.software}};
+    return {{"backend", environment.backend},
+            {"renderer", environment.renderer},
+            {"version", environment.version},
+            {"mesa", environment.mesa()},
+            {"llvm", environment.llvm()},
+            {"cpu", environment.cpu},
+            {"instructions", environment.instructions},
+            {"software", environment.software}};
 }
 
 std::optional<int> approved_frame(const std::string& file_name, const std::string& image_stem) {
@@ -156,9 +162,16 @@ std::vector<ApprovedImage> approved_images(const fs::path& folder, const std::st
         const std::string file = entry.path().filename().string();
         const bool first = file == name + ".exr";
         if (!first && !(file.starts_with(name + "@") && file.ends_with(".exr"))) continue;
+        if (printable(file) != file)
+            throw Error(ExitCode::capture, (folder / printable(file)).string() +
+                                               ": the golden's name has control characters, or is not UTF-8 "
+                                               "(rename or remove it)");
         const std::size_t at = name.size() + 1;
         ApprovedImage& image = images.emplace_back();
         image.file = entry.path();
+        for (const fs::path& beside : {image.file, sidecar_path(image.file)})
+            if (const std::string why = out_of_bounds(beside, folder); !why.empty())
+                throw Error(ExitCode::capture, beside.string() + ": " + why);
         image.key = first ? "" : file.substr(at, file.size() - at - 4);
         image.sidecar = read_sidecar(entry.path(), image.sidecar_fault);
     }
@@ -192,10 +205,10 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
 }
 
 std::string file_hash(const fs::path& file) {
-    std::error_code failure;
-    const std::string bytes = read_text_file(file, failure);
-    if (failure) return "";
-    return fnv1a_hex(bytes);
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 34;
+    std::string fault;
+    const std::string bytes = read_regular_file(file, kMostBytes, fault);
+    return fault.empty() ? fnv1a_hex(bytes) : "";
 }
 
 namespace {
@@ -222,7 +235,8 @@ std::string cpu_instructions() {
     std::string machine = system.machine;
     if (machine != "x86_64") return machine;
     // Mesa's own switch; it takes no notice of other values, and "avx" leaves FMA in.
-    constexpr std::array<std::string_view, 6> kWithoutFma = {"nosse", "sse", "sse2", "sse3", "ssse3", "sse4.1"};
+    constexpr std::array<std::string_view, 6> kWithoutFma = {"nosse", "sse",   "sse2",
+                                                             "sse3",  "ssse3", "sse4.1"};
     const char* limit = std::getenv("GALLIUM_OVERRIDE_CPU_CAPS");
     const bool limited = limit && std::ranges::find(kWithoutFma, limit) != kWithoutFma.end();
     const bool fma = (" " + cpu_property("flags") + " ").find(" fma ") != std::string::npos;

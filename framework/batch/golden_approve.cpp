@@ -8,6 +8,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/input_files.h"
+#include "framework/core/side_file.h"
 
 namespace aftershade {
 
@@ -44,13 +45,13 @@ std::vector<ApprovedImage> approved_of(const GoldenCase& test, const GoldenEnvir
 class Staging {
 public:
     void add_image(const fs::path& target, const fs::path& image) {
-        AtomicFile& file = files_.emplace_back(target);
+        AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));
         std::error_code failure;
         fs::copy_file(image, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
         if (failure) throw Error(ExitCode::output, target.string() + ": " + failure.message());
     }
     void add_text(const fs::path& target, const std::string& text) {
-        AtomicFile& file = files_.emplace_back(target);
+        AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));
         // The inner file is renamed to the staged one; both are whole or not there.
         write_text_file(file.temporary_path(), text);
     }
@@ -124,8 +125,7 @@ private:
             if (old.environment.equals(sidecar.environment) &&
                 old.environment.instructions == sidecar.environment.instructions &&
                 old.sources.look == sidecar.sources.look && old.sources.capture == sidecar.sources.capture &&
-                old.sources.program == sidecar.sources.program &&
-                old.image_hash == sidecar.image_hash)
+                old.sources.program == sidecar.sources.program && old.image_hash == sidecar.image_hash)
                 return;
             // The picture is the one that was looked at then.
             sidecar.approver = old.approver;
@@ -186,7 +186,8 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
     // What cannot be written is known before the cases are drawn.
     std::error_code absent;
     for (const GoldenCase* test : cases)
-        if (fs::is_directory(test->goldens, absent)) prepare_output_folder(test->goldens / test->stem);
+        if (fs::is_directory(test->goldens, absent))
+            prepare_output_folder(path_below(test->goldens, test->stem));
     const std::vector<std::string> looks = look_hashes(cases, options.run.render);
     CaptureHasher captures;
     approval.cases.resize(cases.size());

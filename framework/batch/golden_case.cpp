@@ -5,6 +5,7 @@
 #include "framework/batch/golden_grammar.h"
 #include "framework/capture/frame_range.h"
 #include "framework/core/grammar_reader.h"
+#include "framework/core/path_bounds.h"
 #include "framework/core/text.h"
 #include "framework/core/units.h"
 #include "framework/pipeline/look.h"
@@ -94,7 +95,9 @@ std::vector<GoldenCase> read_effect_cases(const fs::path& effect_folder, const f
     std::sort(files.begin(), files.end());
     std::vector<GoldenCase> cases;
     for (const fs::path& file : files)
-        if (const auto node = read_document(file, diagnostics))
+        if (const std::string why = out_of_bounds(file, effect_folder); !why.empty())
+            diagnostics.error({file.string()}, why);
+        else if (const auto node = read_document(file, diagnostics))
             if (auto parsed = parse_effect_case(*node, file, root, diagnostics))
                 cases.push_back(std::move(*parsed));
     return cases;

@@ -94,7 +94,7 @@ void run_look(const GoldenCase& test, const GoldenRenderOptions& options, const 
               const std::atomic<bool>& interrupt, RenderedCase& rendered) {
     WorkerCommand command;
     command.arguments = words_of(test, options, work);
-    rendered.command = shell_line(command.arguments);
+    rendered.command = printed_command(command.arguments);
     command.arguments[0] = "/proc/self/exe";
     command.limits.wall_time = options.timeout;
     if (!std::getenv("LP_NUM_THREADS"))

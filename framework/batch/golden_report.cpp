@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <map>
-#include <span>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -63,7 +63,8 @@ std::vector<std::string> reasons_of(const GoldenCaseResult& test) {
 /// Whether new images could make the case pass. An approved image that was not fetched is not replaced.
 bool can_approve(const GoldenCaseResult& test) {
     return std::ranges::any_of(test.images, [](const GoldenImage& image) {
-        return image.verdict != Verdict::same && !(image.approved && !lfs_fault(image.approved->file).empty());
+        return image.verdict != Verdict::same &&
+               !(image.approved && !lfs_fault(image.approved->file).empty());
     });
 }
 
@@ -86,10 +87,12 @@ std::string note_of_tolerated(const GoldenSuiteResult& result) {
     for (const GoldenCaseResult& test : result.cases)
         for (const GoldenImage& image : test.images)
             if (image.verdict == Verdict::same && image.approved && !image.bits_equal)
-                ++counts[image.changes.empty() ? "their sidecars do not say why" : joined(image.changes, "; ", "; ")];
+                ++counts[image.changes.empty() ? "their sidecars do not say why"
+                                               : joined(image.changes, "; ", "; ")];
     std::string text;
     for (const auto& [changes, images] : counts)
-        text += fmt::format("{} within tolerance, but with other bits: {}\n", counted(images, "image"), changes);
+        text +=
+            fmt::format("{} within tolerance, but with other bits: {}\n", counted(images, "image"), changes);
     return text;
 }
 
@@ -105,14 +108,16 @@ std::vector<const GoldenCaseResult*> cases_to_approve(const GoldenSuiteResult& r
 std::string snippet_of(const GoldenCaseResult& test, const std::vector<std::string>& lines) {
     constexpr std::size_t kMostLines = 8;
     if (lines.empty() || !test.images.empty()) return lines.empty() ? "" : lines.front();
-    auto first = std::ranges::find_if(lines, [](const auto& line) { return line.find("error") != line.npos; });
+    auto first =
+        std::ranges::find_if(lines, [](const auto& line) { return line.find("error") != line.npos; });
     if (first == lines.end()) first = lines.begin();
     const std::span<const std::string> rest(first, lines.end());
     return joined(rest.first(std::min(rest.size(), kMostLines)), "\n", "\n");
 }
 
 std::string fault_of_orphan(const fs::path& orphan) {
-    if (orphan.extension() == ".json") return "no case gives this golden: a sidecar without an image; remove it";
+    if (orphan.extension() == ".json")
+        return "no case gives this golden: a sidecar without an image; remove it";
     return "no case gives this golden; remove it, or fix the case";
 }
 
@@ -126,8 +131,8 @@ std::string junit_case(const GoldenCaseResult& test, const GoldenReportContext& 
     // What no picture decides (no GL, a file that cannot be read) is an error of JUnit.
     const char* const element = test.verdict == Verdict::file_error ? "error" : "failure";
     if (test.verdict >= Verdict::failure)
-        text += fmt::format("<{0} type=\"{1}\" message=\"{2}\">{3}</{0}>", element, verdict_name(test.verdict),
-                            xml_text(why), xml_text(all));
+        text += fmt::format("<{0} type=\"{1}\" message=\"{2}\">{3}</{0}>", element,
+                            verdict_name(test.verdict), xml_text(why), xml_text(all));
     else if (!test.skipped.empty()) text += fmt::format("<skipped message=\"{}\"/>", xml_text(test.skipped));
     else if (test.verdict == Verdict::warning)
         text += fmt::format("<system-out>warning: {}</system-out>", xml_text(all));
@@ -197,7 +202,7 @@ std::string golden_command(const std::string& verb, const GoldenReportContext& c
                            const std::vector<std::string>& cases) {
     std::vector<std::string> words = {"aftershade", "golden", verb, context.suite->argument};
     for (const std::string& name : cases) words.insert(words.end(), {"--filter", name});
-    return shell_line(words) + context.with_options;
+    return printed_command(words) + context.with_options;
 }
 
 Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context) {
@@ -227,7 +232,8 @@ Json json_of(const GoldenCaseResult& result, const GoldenReportContext& context)
 
 }  // namespace
 
-std::string approve_command(const GoldenReportContext& context, const std::vector<const GoldenCaseResult*>& cases) {
+std::string approve_command(const GoldenReportContext& context,
+                            const std::vector<const GoldenCaseResult*>& cases) {
     if (cases.empty()) return "";
     std::vector<std::string> names;
     bool keeps_others = false;
@@ -249,7 +255,8 @@ std::string allowances_of(const GoldenCaseResult& test) {
         Comparison comparison = *image.comparison;
         for (LayerComparison& layer : comparison.layers)
             for (std::string& name : std::exchange(layer.not_judged, {}))
-                if (std::ranges::find(not_judged, name) == not_judged.end()) not_judged.push_back(std::move(name));
+                if (std::ranges::find(not_judged, name) == not_judged.end())
+                    not_judged.push_back(std::move(name));
         double percent = 0;
         for (const LayerComparison& layer : comparison.layers)
             percent = std::max(percent, layer.left_out_percent());
@@ -281,7 +288,7 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
             if (can_approve(test)) text += "    " + remedy_of(test, context) + "\n";
         }
     for (const fs::path& orphan : result.orphans)
-        text += fmt::format("\nFAILED {}: {}\n", orphan.string(), fault_of_orphan(orphan));
+        text += fmt::format("\nFAILED {}: {}\n", printable(orphan.string()), fault_of_orphan(orphan));
     if (const auto cases = cases_to_approve(result, false); cases.size() > 1)
         text += "\nto approve all: " + approve_command(context, cases) + "\n";
     if (const auto cases = cases_to_approve(result, true); cases.size() > 1)
@@ -299,7 +306,8 @@ std::string summary_of(const GoldenSuiteResult& result, const GoldenReportContex
 std::string junit_of(const GoldenSuiteResult& result, const GoldenReportContext& context) {
     const Counts counts = count(result);
     const std::size_t tests = result.cases.size() + result.orphans.size();
-    const auto errors = std::size_t(std::ranges::count(result.cases, Verdict::file_error, &GoldenCaseResult::verdict));
+    const auto errors =
+        std::size_t(std::ranges::count(result.cases, Verdict::file_error, &GoldenCaseResult::verdict));
     const std::size_t failures = std::size_t(counts.failed) + result.orphans.size() - errors;
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
     const std::string sums = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"", tests,
@@ -365,21 +373,27 @@ Json json_of(const GoldenSuiteResult& result, const GoldenReportContext& context
 std::string early_junit_of(const GoldenEarlyEnd& end) {
     const std::string sums = "tests=\"1\" failures=\"0\" errors=\"1\" time=\"0\"";
     return fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n  <testsuite name=\"{1}\" {0} skipped=\"0\">\n"
-        "    <testcase classname=\"golden\" name=\"run\" time=\"0\"><error type=\"exit code {2}\" message=\"{3}\">{3}"
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n  <testsuite name=\"{1}\" {0} "
+        "skipped=\"0\">\n"
+        "    <testcase classname=\"golden\" name=\"run\" time=\"0\"><error type=\"exit code {2}\" "
+        "message=\"{3}\">{3}"
         "</error></testcase>\n  </testsuite>\n</testsuites>\n",
         sums, xml_text(end.suite), end.exit_code, xml_text(end.message));
 }
 
 Json early_json_of(const GoldenEarlyEnd& end) {
-    return {{"aftershade", 1}, {"suite", end.suite},     {"verdict", "ended early"},      {"exit_code", end.exit_code},
-            {"error", end.message}, {"cases", Json::array()}, {"orphans", Json::array()}};
+    return {{"aftershade", 1},          {"suite", end.suite},
+            {"verdict", "ended early"}, {"exit_code", end.exit_code},
+            {"error", end.message},     {"cases", Json::array()},
+            {"orphans", Json::array()}};
 }
 
 std::string early_page_of(const GoldenEarlyEnd& end) {
     return fmt::format(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: ended early</title></head>\n"
-        "<body><h1>{0}: the run ended early</h1>\n<pre>{1}</pre>\n<p>Exit code {2}. No case was judged.</p></body></html>\n",
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: ended "
+        "early</title></head>\n"
+        "<body><h1>{0}: the run ended early</h1>\n<pre>{1}</pre>\n<p>Exit code {2}. No case was "
+        "judged.</p></body></html>\n",
         xml_text(end.suite), xml_text(end.message), end.exit_code);
 }
 

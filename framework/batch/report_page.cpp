@@ -16,7 +16,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/open_file.h"
-#include "framework/core/path_bounds.h"
+#include "framework/core/side_file.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {
@@ -258,7 +258,11 @@ void write_report_page(const fs::path& report, const fs::path& page, const Repor
     Json data;
     Store store(options.limit_bytes);
     try {
-        data = Json::parse(read_text_file(file, ExitCode::capture));
+        constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+        std::string fault;
+        const std::string text = read_file_below(report, "report.json", kMostBytes, fault);
+        if (!fault.empty()) throw Error(ExitCode::capture, file.string() + ": " + fault);
+        data = Json::parse(text);
         check_keys(data);
         add_images(data, report, store);
     } catch (const Json::exception& error) {

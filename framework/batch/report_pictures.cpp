@@ -1,16 +1,20 @@
 #include "framework/batch/report_pictures.h"
 
-#include <fstream>
+#include <unistd.h>
+
 #include <sstream>
 #include <utility>
 
 #include "framework/core/atomic_file.h"
+#include "framework/core/side_file.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kList = ".pictures";
 
 /// Whoever changed the list, nothing outside the folder is removed.
 bool is_plain_name(const std::string& name) {
@@ -20,9 +24,12 @@ bool is_plain_name(const std::string& name) {
 }  // namespace
 
 ReportPictures::ReportPictures(fs::path folder) : folder_(std::move(folder)) {
-    std::error_code failure;
-    if (!fs::exists(list(), failure)) return;
-    std::istringstream lines(read_text_file(list(), ExitCode::output));
+    make_folder_below(folder_.parent_path(), folder_.filename());
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 28;
+    std::string fault;
+    std::istringstream lines(read_file_below(folder_, kList, kMostBytes, fault));
+    if (!fault.empty() && fault != kNoSuchFile)
+        throw Error(ExitCode::output, (folder_ / kList).string() + ": " + fault);
     for (std::string name; std::getline(lines, name);)
         if (is_plain_name(name)) old_.insert(name);
 }
@@ -30,12 +37,14 @@ ReportPictures::ReportPictures(fs::path folder) : folder_(std::move(folder)) {
 fs::path ReportPictures::add(const std::string& name) {
     const std::scoped_lock lock(mutex_);
     if (own_.insert(name).second && !old_.contains(name)) {
-        std::ofstream out(list(), std::ios::binary | std::ios::app);
-        out << name << "\n";
-        out.close();
-        if (!out) throw Error(ExitCode::output, list().string() + ": cannot be written");
+        const std::string line = name + "\n";
+        std::string fault;
+        const auto list = open_file_below(folder_, kList, fault, FileUse::append);
+        if (list && write(list->descriptor(), line.data(), line.size()) != ssize_t(line.size()))
+            fault = "cannot be written";
+        if (!fault.empty()) throw Error(ExitCode::output, (folder_ / kList).string() + ": " + fault);
     }
-    return folder_ / name;
+    return path_below(folder_, name);
 }
 
 void ReportPictures::remove_old() {
@@ -50,7 +59,7 @@ void ReportPictures::remove_old() {
         if (failure)
             throw Error(ExitCode::output, file.string() + ": cannot be removed: " + failure.message());
     }
-    write_text_file(list(), names);
+    write_text_file(path_below(folder_, kList), names);
     old_.clear();
 }
 

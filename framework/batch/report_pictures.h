@@ -13,7 +13,7 @@ namespace aftershade {
 /// which a run that was killed has not written.
 class ReportPictures {
 public:
-    /// `folder` exists. Throws Error(ExitCode::output) where its list cannot be read.
+    /// Makes the folder. Throws Error(ExitCode::output) where it cannot be made, or its list cannot be read.
     explicit ReportPictures(std::filesystem::path folder);
 
     const std::filesystem::path& folder() const { return folder_; }
@@ -27,8 +27,6 @@ public:
     void remove_old();
 
 private:
-    std::filesystem::path list() const { return folder_ / ".pictures"; }
-
     std::filesystem::path folder_;
     std::mutex mutex_;
     std::set<std::string> old_;  // of runs before this one

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <set>
@@ -65,6 +66,15 @@ public:
                 found != frames_.end() && found->second.outcome == "not run")
                 found->second.message = why;
     }
+    /// A process that cannot be started: what keeps one from it keeps the others, too.
+    void failed(std::exception_ptr failure) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::move(failure);
+        stop_ = true;
+    }
+    void rethrow() const {
+        if (failure_) std::rethrow_exception(failure_);
+    }
     /// Set by an error that ends the whole run.
     const std::atomic<bool>& stop() const { return stop_; }
 
@@ -95,6 +105,7 @@ private:
     std::atomic<bool> stop_ = false;
     ExitCode worst_ = ExitCode::done;
     std::string error_;
+    std::exception_ptr failure_;
 };
 
 /// One piece, by as many workers as it takes.
@@ -118,9 +129,7 @@ private:
     /// Whether another worker should go on with what is left of the piece.
     bool run_one() {
         WorkerCommand command;
-        command.arguments = options_.command;
-        for (std::string& word : options_.frame_arguments(piece_))
-            command.arguments.push_back(std::move(word));
+        command.arguments = options_.command(piece_);
         command.limits.memory_bytes = options_.memory_bytes;
         if (!std::getenv("LP_NUM_THREADS"))
             command.environment["LP_NUM_THREADS"] = std::to_string(options_.threads);
@@ -214,7 +223,11 @@ JobsReport run_jobs(const JobOptions& options, const JobListener& listener, cons
         std::vector<std::jthread> workers;
         for (const JobPiece& piece : options.pieces)
             workers.emplace_back([&, piece] {
-                PieceRun(options, piece, board, end).run();
+                try {
+                    PieceRun(options, piece, board, end).run();
+                } catch (...) {
+                    board.failed(std::current_exception());
+                }
                 --running;
             });
         while (running > 0) {
@@ -222,6 +235,7 @@ JobsReport run_jobs(const JobOptions& options, const JobListener& listener, cons
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
     }
+    board.rethrow();
     return board.report(stop);
 }
 

@@ -19,10 +19,8 @@ namespace aftershade {
 
 struct JobOptions {
     std::vector<JobPiece> pieces;  ///< one worker each, all at the same time
-    /// The worker's command, without what says which frames; the first is the program's path.
-    std::vector<std::string> command;
-    /// What is added to the command for some frames.
-    std::function<std::vector<std::string>(const JobPiece&)> frame_arguments;
+    /// A worker's command; the first is the program's path.
+    std::function<std::vector<std::string>(const JobPiece&)> command;
     int warmup_frames = 0;  ///< before the frames of a worker that continues after a failed one
     int threads = 1;        ///< of each worker, for GL on software and for files
     std::chrono::duration<double> frame_timeout{std::chrono::duration<double>::max()};

@@ -17,6 +17,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/diagnostics.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 #include "framework/file/exr_loss.h"
 
@@ -27,17 +28,23 @@ namespace {
 constexpr int kMaxRankPairs = 50;  // two ranks to a set of four channels, which two digits count
 
 /// The text of the manifest beside the EXR file; nullopt where there is none. A name that leads out of the
-/// file's folder is not followed: files come from elsewhere.
+/// file's folder is not followed: files come from elsewhere. Where the EXR file is a link, as in a folder of
+/// links to a farm's storage, the manifest may stand beside what it leads to.
 std::optional<std::string> manifest_beside(const FrameFile& file, const std::optional<std::string>& name) {
+    namespace fs = std::filesystem;
     constexpr std::uintmax_t kMaxBytes = 64 << 20;
-    if (!name || name->empty() || std::filesystem::path(*name).filename() != *name) return std::nullopt;
-    const std::filesystem::path path = file.path().parent_path() / *name;
+    if (!name || name->empty() || fs::path(*name).filename() != *name) return std::nullopt;
     std::error_code failure;
-    if (!std::filesystem::is_regular_file(path, failure) ||
-        std::filesystem::file_size(path, failure) > kMaxBytes)
-        return std::nullopt;
-    std::string text = read_text_file(path, failure);
-    return failure ? std::nullopt : std::optional(std::move(text));
+    const fs::path folder = file.path().parent_path();
+    std::string fault, fault_of_target = kNoSuchFile;
+    std::string text = read_file_below(folder, *name, kMaxBytes, fault);
+    if (!fault.empty() && fs::is_symlink(file.path(), failure))
+        text = read_file_below(fs::canonical(file.path(), failure).parent_path(), *name, kMaxBytes,
+                               fault_of_target);
+    if (fault.empty() || fault_of_target.empty()) return text;
+    if (fault == kNoSuchFile) return std::nullopt;
+    throw Error(ExitCode::capture, (folder / *name).string() + ", the Cryptomatte manifest of " +
+                                       file.path().filename().string() + ": " + fault);
 }
 
 /// A manifest, {"object": "hex", ...}. One that is damaged counts as none: it is only a help. An id that is
@@ -128,13 +135,13 @@ std::string object_elsewhere(const std::string& object, const FrameFile& file) {
     const std::string elsewhere = object_elsewhere(object, file);
     // Where one of several has it, the first is the one that has not.
     const auto missing = elsewhere.empty() ? layers : layers.first(1);
-    throw UnknownObject(file.path().string() + ": the Cryptomatte" + (missing.size() == 1 ? " " : "s ") +
-                            joined(names_of(missing), ", ") + (missing.size() == 1 ? " has" : " have") +
-                            " no object '" + object + "'" +
-                            (elsewhere.empty() ? did_you_mean(object, known) +
-                                                     " (inspect --cryptomatte lists them)"
-                                               : elsewhere),
-                        object);
+    throw UnknownObject(
+        file.path().string() + ": the Cryptomatte" + (missing.size() == 1 ? " " : "s ") +
+            joined(names_of(missing), ", ") + (missing.size() == 1 ? " has" : " have") + " no object '" +
+            object + "'" +
+            (elsewhere.empty() ? did_you_mean(object, known) + " (inspect --cryptomatte lists them)"
+                               : elsewhere),
+        object);
 }
 
 bool says_object(const CryptomatteLayer& layer) {

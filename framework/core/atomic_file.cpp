@@ -77,7 +77,7 @@ bool is_running(pid_t process) {
 
 /// A process of another PID namespace looks dead from here, but its lock holds.
 bool is_locked(const fs::path& file) {
-    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (descriptor < 0) return true;
     const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) != 0;
     close(descriptor);
@@ -145,7 +145,6 @@ AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path))
                         ": is a pipe, a socket or a device, and this file is made beside its "
                         "place and renamed (name a regular file)");
     target_ = target.path;
-    temporary_path_ = temporary_name(target_, kTemporaryEnd);
     std::error_code failure;
     const fs::file_status old = fs::symlink_status(target_, failure);
     if (fs::is_symlink(old)) {
@@ -158,7 +157,16 @@ AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path))
     // while it is written.
     constexpr mode_t kMode = 0666, kOwner = 0600;
     const mode_t mode = kept_ ? mode_t(*kept_) | kOwner : kMode;
-    lock_ = open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    // What has the name already is of a process of that number, or planted.
+    constexpr int kMostTries = 1000;
+    for (int i = 0; i == 0 || (lock_ < 0 && errno == EEXIST && i < kMostTries); ++i) {
+        temporary_path_ = temporary_name(target_, kTemporaryEnd);
+        lock_ = open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    }
+    if (lock_ < 0 && errno == EEXIST)
+        throw Error(ExitCode::output, final_path_.string() +
+                                          ": every temporary name beside it is taken (remove " +
+                                          temporary_path_.filename().string() + " and the like)");
     if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
 }
 

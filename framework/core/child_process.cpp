@@ -27,14 +27,28 @@ constexpr bool kLimitsMemory = true;
 /// More than any child is given.
 constexpr int kFirstOwnDescriptor = 8;
 
+[[noreturn]] void refuse(const std::string& what) {
+    const int reason = errno;
+    const bool is_files = reason == EMFILE || reason == ENFILE;
+    const bool is_limit = is_files || reason == EAGAIN || reason == ENOMEM;
+    throw Error(is_limit ? ExitCode::memory : ExitCode::effect,
+                what + ": " + std::strerror(reason) +
+                    (is_files   ? " (raise the limit of open files: ulimit -n 256)"
+                     : is_limit ? " (raise the limit of processes: ulimit -u; or run less at once)"
+                                : ""));
+}
+
 [[noreturn]] void fail_to_connect() {
-    throw Error(ExitCode::effect, std::string("cannot make a pipe for a process: ") + std::strerror(errno));
+    refuse("cannot make a pipe for a process");
 }
 
 Descriptor moved_up(Descriptor descriptor) {
     if (descriptor.get() >= kFirstOwnDescriptor) return descriptor;
     const int moved = fcntl(descriptor.get(), F_DUPFD_CLOEXEC, kFirstOwnDescriptor);
-    if (moved < 0) fail_to_connect();
+    if (moved < 0) {
+        if (errno == EINVAL) errno = EMFILE;  // no number that high is allowed
+        fail_to_connect();
+    }
     return Descriptor(moved);
 }
 
@@ -154,8 +168,7 @@ pid_t spawn_child(const ChildCommand& command) {
                          report.write.get(),         command.limits,
                          command.leads_group,        getpid()};
     const pid_t process = fork();
-    if (process < 0)
-        throw Error(ExitCode::effect, arguments[0] + ": cannot start a process: " + std::strerror(errno));
+    if (process < 0) refuse(arguments[0] + ": cannot start a process");
     if (process == 0) become_child(plan);
     // Here too, so that the group is there whoever comes first.
     if (command.leads_group) setpgid(process, process);

@@ -71,48 +71,6 @@ std::string out_of_bounds(const fs::path& file, const fs::path& folder) {
            target.string() + " (move it there, or allow its folder with --allow-path)";
 }
 
-// One folder after the other, so that no link is followed on the way either.
-std::optional<OpenFile> open_file_below(const fs::path& folder, const fs::path& name, std::string& fault) {
-    fault.clear();
-    OpenFile at(folder / name,
-                open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    const fs::path normal = name.lexically_normal();
-    if (normal.empty() || normal.is_absolute() || *normal.begin() == "..") {
-        fault = "leads out of its folder";
-        return std::nullopt;
-    }
-    for (auto part = normal.begin(); at.descriptor() >= 0 && part != normal.end(); ++part) {
-        const bool is_last = std::next(part) == normal.end();
-        // Not blocking: a pipe would wait for a writer.
-        const int flags = O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | (is_last ? 0 : O_DIRECTORY);
-        at = OpenFile(folder / name, openat(at.descriptor(), part->c_str(), flags));
-    }
-    struct stat status = {};
-    if (at.descriptor() < 0) {
-        const bool is_link = errno == ELOOP || errno == ENOTDIR;
-        fault = is_link ? "is, or lies behind, a symbolic link, which is not followed" : std::strerror(errno);
-    } else if (fstat(at.descriptor(), &status) != 0 || !S_ISREG(status.st_mode)) {
-        fault = "is not a regular file";
-    }
-    return fault.empty() ? std::optional(std::move(at)) : std::nullopt;
-}
-
-std::string read_file_below(const fs::path& folder, const fs::path& name, std::uintmax_t max_bytes,
-                            std::string& fault) {
-    const std::optional<OpenFile> file = open_file_below(folder, name, fault);
-    std::string bytes;
-    std::array<char, 65536> buffer;
-    while (file && fault.empty()) {
-        const ssize_t count = read(file->descriptor(), buffer.data(), buffer.size());
-        if (count == 0) return bytes;
-        if (count > 0) bytes.append(buffer.data(), std::size_t(count));
-        else if (errno != EINTR) fault = std::string("cannot be read: ") + std::strerror(errno);
-        if (bytes.size() > max_bytes)
-            fault = "the file has more bytes than the limit of " + std::to_string(max_bytes);
-    }
-    return "";
-}
-
 std::vector<fs::path> allowed_folders() {
     const char* const text = std::getenv(kVariable);
     std::vector<fs::path> folders;

@@ -1,14 +1,10 @@
 // Where the files of documents from untrusted sources can lie.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
-
-#include "framework/core/open_file.h"
 
 namespace aftershade {
 
@@ -39,14 +35,6 @@ private:
 
 /// With links followed as far as there is something.
 std::filesystem::path resolved_path(const std::filesystem::path& path);
-
-/// A regular file that lies in `folder` under the relative path `name` and is reached without following a
-/// link: for untrusted folders. Else nullopt, and `fault` says why, as a message ends.
-std::optional<OpenFile> open_file_below(const std::filesystem::path& folder,
-                                        const std::filesystem::path& name, std::string& fault);
-/// The bytes of such a file, of at most `max_bytes`. Else "", and `fault` says why.
-std::string read_file_below(const std::filesystem::path& folder, const std::filesystem::path& name,
-                            std::uintmax_t max_bytes, std::string& fault);
 
 /// Folders of --allow-path, and of $AFTERSHADE_ALLOW_PATH, separated by colons.
 std::vector<std::filesystem::path> allowed_folders();

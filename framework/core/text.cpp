@@ -136,6 +136,29 @@ std::string shell_line(const std::vector<std::string>& words) {
     return line;
 }
 
+std::string printed_command(const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) {
+        if (!line.empty()) line += ' ';
+        if (printable(word) == word) {
+            line += shell_word(word);
+            continue;
+        }
+        line += "$'";
+        for (std::string_view rest = word; !rest.empty();) {
+            const unsigned char first = rest.front();
+            const std::string_view character = take_character(rest);
+            if (first == '\'' || first == '\\') line += '\\';
+            line += character;
+            if (!character.empty()) continue;
+            line += '\\';
+            for (const int shift : {6, 3, 0}) line += char('0' + (first >> shift & 7));
+        }
+        line += '\'';
+    }
+    return line;
+}
+
 std::uint64_t fnv1a(std::span<const std::byte> bytes, std::uint64_t hash) {
     for (const std::byte byte : bytes) hash = (hash ^ std::uint64_t(byte)) * 1099511628211ull;
     return hash;

@@ -41,6 +41,9 @@ std::string json_string(std::string_view text);
 std::string xml_text(std::string_view text);
 /// Words as a POSIX shell takes them apart again, quoted where it would read them otherwise.
 std::string shell_line(const std::vector<std::string>& words);
+/// The same for people to copy, in one line: control characters, and what is not UTF-8, are escaped as bash,
+/// ksh and zsh read them ($'\012'). In a script shell_line() is right, since other shells lack that.
+std::string printed_command(const std::vector<std::string>& words);
 
 /// FNV-1a (Fowler, Noll and Vo 1991). It names files and finds damage; it does not resist intent.
 inline constexpr std::uint64_t kFnvBegin = 14695981039346656037ull;

@@ -11,6 +11,7 @@
 #include "framework/core/atomic_file.h"
 #include "framework/core/content_hash.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 
 namespace aftershade {
 
@@ -82,11 +83,8 @@ fs::path ProgramStore::file_of(const std::string& key) const {
 
 std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) const {
     if (!is_on()) return std::nullopt;
-    const fs::path file = file_of(key);
-    std::error_code failure;
-    if (!fs::is_regular_file(file, failure) || fs::file_size(file, failure) > kMaxFileBytes || failure)
-        return std::nullopt;
-    const std::string text = read_text_file(file, failure);
+    std::string fault;
+    const std::string text = read_file_below(folder_, file_of(key).filename(), kMaxFileBytes, fault);
     Taker taker{text};
     if (taker.bytes(kMagic.size()) != kMagic || taker.bytes(taker.number()) != key) return std::nullopt;
     gpu::ProgramBinary binary;
@@ -133,7 +131,7 @@ void ProgramStore::save(const std::string& key, const gpu::ProgramBinary& binary
     std::error_code failure;
     fs::create_directories(folder_, failure);
     try {
-        AtomicFile file(file_of(key));
+        AtomicFile file(path_below(folder_, file_of(key).filename()));
         const std::string text = file_text(key, binary);
         std::ofstream out(file.temporary_path(), std::ios::binary);
         out.write(text.data(), static_cast<std::streamsize>(text.size()));

@@ -139,7 +139,7 @@ private:
              fmt::format(
                  "is compressed with {}, which this build's OpenEXR {} does not read; convert it with a "
                  "newer one: oiiotool {} --compression zip -o OUT.exr",
-                 which, OPENEXR_VERSION_STRING, shell_line({path_.string()})));
+                 which, OPENEXR_VERSION_STRING, printed_command({path_.string()})));
     }
 
     /// The library reads up to the empty name that ends the list, wherever that is.

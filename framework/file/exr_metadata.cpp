@@ -116,7 +116,7 @@ const std::vector<std::string>& exr_compression_names() {
 }
 
 std::string exr_flatten_remedy(const std::filesystem::path& path) {
-    return "flatten it: oiiotool " + shell_line({path.string()}) + " --flatten -o OUT.exr";
+    return "flatten it: oiiotool " + printed_command({path.string()}) + " --flatten -o OUT.exr";
 }
 
 std::optional<int> exr_compression_level(std::string_view text) {
@@ -225,8 +225,8 @@ ExrPart describe_part(const Imf::Header& header) {
     part.data_window = to_window(header.dataWindow());
     part.display_window = to_window(header.displayWindow());
     part.pixel_aspect = header.pixelAspectRatio();
-    part.has_smaller_levels =
-        header.hasTileDescription() && header.tileDescription().mode != Imf::ONE_LEVEL && is_tiled_part(header);
+    part.has_smaller_levels = header.hasTileDescription() &&
+                              header.tileDescription().mode != Imf::ONE_LEVEL && is_tiled_part(header);
     for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
         const Imf::Channel& channel = i.channel();
         const PixelType type = channel.type == Imf::HALF    ? PixelType::half

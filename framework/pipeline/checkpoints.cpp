@@ -1,10 +1,13 @@
 #include "framework/pipeline/checkpoints.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "framework/capture/frame_range.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/pipeline/history_file.h"
 
 namespace aftershade {
@@ -18,17 +21,21 @@ constexpr const char* kName = "####.history";
 }  // namespace
 
 Checkpoints::Checkpoints(const RunState& state, std::vector<int> frames)
-    : folder_(state.checkpoints()), frames_(std::move(frames)) {
+    : base_(state.folder), name_(state.checkpoints()), frames_(std::move(frames)) {
     for (std::size_t i = 0; i < frames_.size(); ++i) places_[frames_[i]] = i;
 }
 
 fs::path Checkpoints::file(int frame) const {
-    return folder_ / FramePattern(kName).path(frame);
+    return base_ / name_of(frame);
+}
+
+std::string Checkpoints::name_of(int frame) const {
+    return name_ + "/" + FramePattern(kName).path(frame);
 }
 
 bool Checkpoints::holds(int frame, const std::string& fingerprint) const {
-    std::error_code unreadable;
-    if (!fs::exists(file(frame), unreadable)) return false;
+    std::string fault;
+    if (!open_file_below(base_, name_of(frame), fault)) return false;
     try {
         return read_history(file(frame)).fingerprint == fingerprint;
     } catch (const Error&) {
@@ -36,19 +43,28 @@ bool Checkpoints::holds(int frame, const std::string& fingerprint) const {
     }
 }
 
-void Checkpoints::make_folder() const {
-    std::error_code failure;
-    fs::create_directories(folder_, failure);
-    if (failure)
-        throw Error(ExitCode::output, folder_.string() + ": cannot be made: " + failure.message() +
-                                          " (--checkpoint 0 runs without)");
+fs::path Checkpoints::writable(int frame) const {
+    try {
+        make_folder_below(base_, name_);
+        return path_below(base_, name_of(frame));
+    } catch (const Error& error) {
+        throw Error(ExitCode::output, std::string(error.what()) + " (--checkpoint 0 runs without)");
+    }
+}
+
+fs::path Checkpoints::folder() const {
+    try {
+        return path_below(base_, name_);
+    } catch (const Error&) {
+        return {};  // what stands behind a link is not ours
+    }
 }
 
 std::vector<std::size_t> Checkpoints::saved() const {
     const FramePattern name(kName);
     std::vector<std::size_t> places;
     std::error_code failure;
-    for (const auto& entry : fs::directory_iterator(folder_, failure))
+    for (const auto& entry : fs::directory_iterator(folder(), failure))
         if (const auto frame = name.match(entry.path().filename().string()))
             if (const auto place = places_.find(*frame); place != places_.end())
                 places.push_back(place->second);
@@ -65,12 +81,13 @@ void Checkpoints::drop_old() const {
 }
 
 void Checkpoints::drop_all() const {
+    if (folder().empty()) return;
     std::error_code failure;
     for (const std::size_t place : saved()) fs::remove(file(frames_[place]), failure);
     // What kills left of some that were being written: ".0010.history.<pid>-<n>.tmp".
     const FramePattern name(kName);
     std::vector<fs::path> torn;
-    for (const auto& entry : fs::directory_iterator(folder_, failure)) {
+    for (const auto& entry : fs::directory_iterator(folder(), failure)) {
         const std::string text = entry.path().filename().string();
         const std::size_t end = text.find(".history.");
         if (!text.starts_with('.') || !text.ends_with(".tmp") || end == std::string::npos) continue;
@@ -79,8 +96,8 @@ void Checkpoints::drop_all() const {
     }
     for (const fs::path& path : torn) fs::remove(path, failure);
     // The folders go where nothing of another run is in them.
-    fs::remove(folder_, failure);
-    fs::remove(folder_.parent_path(), failure);
+    rmdir((base_ / name_).c_str());
+    rmdir((base_ / name_).parent_path().c_str());
 }
 
 }  // namespace aftershade

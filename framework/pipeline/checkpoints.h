@@ -23,14 +23,18 @@ public:
     bool holds(int frame, const std::string& fingerprint) const;
     /// Places in the run of the frames that have one, latest first.
     std::vector<std::size_t> saved() const;
-    /// Makes the folder. Throws Error(ExitCode::output).
-    void make_folder() const;
+    /// The same, to be written: makes the folder. Throws Error(ExitCode::output).
+    std::filesystem::path writable(int frame) const;
     /// Keeps those of the two latest frames in the order of the run.
     void drop_old() const;
     void drop_all() const;
 
 private:
-    std::filesystem::path folder_;
+    std::string name_of(int frame) const;
+    std::filesystem::path folder() const;  // "" where it lies behind a link
+
+    std::filesystem::path base_;
+    std::string name_;  // of the folder, below it
     std::vector<int> frames_;
     std::map<int, std::size_t> places_;  // in the run, by frame
 };

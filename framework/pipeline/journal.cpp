@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 #include "framework/core/content_hash.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/pipeline/run_lock.h"
 
 namespace aftershade {
@@ -75,16 +76,13 @@ std::string line_of(const json& document) {
 }  // namespace
 
 Journal::Journal(RunState state) : state_(std::move(state)) {
-    std::error_code failure;
-    if (!fs::exists(state_.journal(), failure)) return;
-    std::ifstream in;
-    // A pipe would wait for a writer, a device may have no end.
-    if (fs::is_regular_file(state_.journal(), failure)) in.open(state_.journal(), std::ios::binary);
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+    std::string fault;
+    std::istringstream in(read_file_below(state_.folder, RunState::kJournal, kMostBytes, fault));
     for (std::string line; std::getline(in, line);) read_line(line);
-    if (!in.is_open() || in.bad())
-        throw Error(ExitCode::output, state_.journal().string() +
-                                          ": this journal of earlier runs cannot be read (make it readable, "
-                                          "delete it, or run with --no-journal)");
+    if (!fault.empty() && fault != kNoSuchFile)
+        throw Error(ExitCode::output, state_.journal().string() + ": this journal of earlier runs " + fault +
+                                          " (make it readable, delete it, or run with --no-journal)");
 }
 
 void Journal::read_line(const std::string& line) {
@@ -139,13 +137,14 @@ void Journal::add(int frame, const std::string& setup, const FrameFingerprint& f
 /// Not flushed to the disk: after a power cut the lines that are lost cost their frames' time and nothing
 /// else, and the outputs themselves were flushed before they got their names.
 void Journal::append(std::string line) const {
-    const std::string path = state_.journal().string();
-    const auto fail = [&](const char* what) {
+    const auto fail = [&](const std::string& why) {
         return Error(ExitCode::output,
-                     path + ": " + what + ": " + std::strerror(errno) + " (--no-journal runs without it)");
+                     state_.journal().string() + ": " + why + " (--no-journal runs without it)");
     };
-    const int file = open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-    if (file < 0) throw fail("cannot be opened");
+    std::string fault;
+    const auto opened = open_file_below(state_.folder, RunState::kJournal, fault, FileUse::append);
+    if (!opened) throw fail(fault);
+    const int file = opened->descriptor();
     // Network file systems place appended bytes correctly only under a lock; others ignore that it failed.
     lock_whole_file(file);
     // What a killed run left of a line must not swallow this one.
@@ -154,10 +153,8 @@ void Journal::append(std::string line) const {
     if (end > 0 && pread(file, &last, 1, end - 1) == 1 && last != '\n') line.insert(0, "\n");
     errno = ENOSPC;  // what a short write means
     const ssize_t written = write(file, line.data(), line.size());
-    const int failure = errno;
-    close(file);
-    errno = failure;
-    if (written != ssize_t(line.size())) throw fail("cannot be written");
+    if (written != ssize_t(line.size()))
+        throw fail(std::string("cannot be written: ") + std::strerror(errno));
 }
 
 std::string Journal::fault_of_files(const JournalFrame& frame, const std::vector<fs::path>& expected) const {

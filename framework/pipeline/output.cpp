@@ -7,6 +7,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/core/text.h"
 #include "framework/file/png_file.h"
 #include "framework/image/display.h"
@@ -224,6 +225,7 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
     if (options.stream) options.stream->write(frame, display_picture(result, capture));
     for (const auto& [tap, image] : result.taps) {
         const fs::path path = path_of_tap(options, tap, frame);
+        if (!options.tap_patterns.contains(tap)) path_below(path.parent_path(), path.filename());
         if (extension(path) == ".png") write_false_color(path, image, options, capture.header);
         else write_tap(path, image, options, capture.header);
         written.paths.push_back(path);

@@ -141,15 +141,13 @@ void ResumableRun::save_checkpoint(std::size_t index, PipelineRenderer& renderer
     if (!pipeline_.has_history() || options_.checkpoint_frames <= 0 || warms_up(index)) return;
     if (++since_checkpoint_ < options_.checkpoint_frames) return;
     since_checkpoint_ = 0;
-    checkpoints_.make_folder();
-    const fs::path file = checkpoints_.file(plan_[index].frame);
+    const fs::path file = checkpoints_.writable(plan_[index].frame);
     try {
         renderer.save_history(file, fingerprints_.of(index).hash);
     } catch (const Error&) {
         // Another worker of this output, which has ended, takes the empty folder away.
         if (std::error_code unreadable; fs::exists(file.parent_path(), unreadable)) throw;
-        checkpoints_.make_folder();
-        renderer.save_history(file, fingerprints_.of(index).hash);
+        renderer.save_history(checkpoints_.writable(plan_[index].frame), fingerprints_.of(index).hash);
     }
     checkpoints_.drop_old();
 }

@@ -175,15 +175,13 @@ public:
         if (!run.frames.empty()) frame_run_.build_ahead(0, wanted());
         for (std::size_t i = 0; i < run.frames.size(); ++i) {
             report_.interrupted = stop;
-            if (report_.interrupted || (run.stop_on_error && !report_.failures.empty())) {
-                report_.frames_left.assign(run.frames.begin() + std::ptrdiff_t(i), run.frames.end());
-                break;
-            }
+            if (report_.interrupted || (run.stop_on_error && !report_.failures.empty())) break;
             frame(i);
         }
         report_.graph_dot = renderer_.graph_dot();
         std::tie(report_.bytes, report_.bytes_unaliased) = renderer_.graph_bytes();
-        report_.history_saved = !run.history_out.empty() && any_rendered_;
+        // One of fewer frames would pass for that of the run.
+        report_.history_saved = !run.history_out.empty() && any_rendered_ && !report_.interrupted;
         // Frees memory while the last files are packed; a history is saved once they are there.
         if (!report_.history_saved) end_gl_();
         finish_write();
@@ -243,7 +241,6 @@ private:
                 observer_.frame_differs(frame.capture->header.path.string() + ": " + difference);
         for (const ObjectSighting& sighting : loader_.objects().take_sightings())
             if (observer_.object_seen) observer_.object_seen(sighting);
-        if (!frame.result->history_reset.empty()) report_.history_begin = number;
         add_times(report_.passes, frame.result->times);
         if (frame.result->telemetry) report_.telemetry.push_back(*frame.result->telemetry);
     }

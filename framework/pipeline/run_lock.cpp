@@ -8,6 +8,8 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -19,6 +21,8 @@
 #include <utility>
 
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
+#include "framework/core/text.h"
 #include "framework/pipeline/run_state.h"
 
 namespace aftershade {
@@ -90,7 +94,9 @@ std::string read_all(int file) {
     std::string text;
     std::array<char, 4096> buffer;
     ssize_t count = 0;
-    while ((count = pread(file, buffer.data(), buffer.size(), off_t(text.size()))) > 0)
+    constexpr std::size_t kMostBytes = std::size_t(1) << 24;  // of a planted one
+    while (text.size() < kMostBytes &&
+           (count = pread(file, buffer.data(), buffer.size(), off_t(text.size()))) > 0)
         text.append(buffer.data(), std::size_t(count));
     return text;
 }
@@ -127,7 +133,8 @@ bool lock_whole_file(int file) {
 RunLock::RunLock(const std::string& pattern, std::vector<int> frames, const std::string& command)
     : pattern_(pattern) {
     const RunState state = run_state(pattern);
-    path_ = state.lock();
+    folder_ = state.folder;
+    name_ = state.lock();
     // Without a number in its name, one file stands for every frame.
     if (state.output.find('#') == std::string::npos) frames = {0};
     make_state_folder(state);
@@ -138,59 +145,64 @@ RunLock::RunLock(const std::string& pattern, std::vector<int> frames, const std:
 /// The file that has the name, with byte 0 locked: the last holder may remove it between open and lock.
 void RunLock::open_file() {
     for (;;) {
-        file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (file_ < 0)
-            throw Error(ExitCode::output, path_.string() + ": cannot be opened: " + std::strerror(errno) +
-                                              " (--no-journal runs without locks)");
+        std::string fault;
+        auto opened = open_file_below(folder_, name_, fault, FileUse::update);
+        if (!opened)
+            throw Error(ExitCode::output,
+                        (folder_ / name_).string() + ": " + fault + " (--no-journal runs without locks)");
+        file_ = opened->release();
         held_ = lock_bytes(file_, F_OFD_SETLKW, F_WRLCK, 0, 1);
         struct stat ours {
         }, named{};
         fstat(file_, &ours);
-        if (!held_ || (stat(path_.c_str(), &named) == 0 && ours.st_ino == named.st_ino)) return;
+        if (!held_ || (lstat((folder_ / name_).c_str(), &named) == 0 && ours.st_ino == named.st_ino)) return;
         close(file_);
     }
 }
 
 namespace {
 
-std::string first_line(const std::string& file) {
-    std::ifstream in(file);
-    std::string line;
-    std::getline(in, line);
-    return line;
+/// The value of a line of /proc/<process>/status, such as "State"; "" where there is no such process.
+std::string status_of(int process, const std::string& name) {
+    std::ifstream in("/proc/" + std::to_string(process) + "/status");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with(name + ":")) return std::string(trimmed(line.substr(name.size() + 2)));
+    return "";
 }
 
-/// A worker whose run was killed: the kernel is about to end it, or has just done so.
-bool is_orphaned_worker(const json& holder) {
-    if (!holder.value("command", "").starts_with("/proc/self/exe ") ||
-        holder.value("host", "") != host_name())
-        return false;
-    const std::string process = "/proc/" + std::to_string(holder.value("pid", 0));
-    const std::string stat = first_line(process + "/stat");  // "pid (name) state parent ..."
-    std::istringstream fields(stat.substr(std::min(stat.rfind(')'), stat.size() - 1) + 1));
-    std::string state, parent;
-    fields >> state >> parent;
-    std::error_code failure;
-    return stat.empty() || fs::read_symlink("/proc/" + parent + "/exe", failure) !=
-                               fs::read_symlink(process + "/exe", failure);
+/// Gone, or on its way: proc(5). A process that was killed keeps its locks for a while.
+bool is_ending(int process) {
+    constexpr unsigned long long kKilled = 1ull << (SIGKILL - 1);
+    const std::string state = status_of(process, "State"), pending = status_of(process, "ShdPnd");
+    return state.empty() || state[0] == 'Z' || state[0] == 'X' ||
+           (std::strtoull(pending.c_str(), nullptr, 16) & kKilled) != 0;
+}
+
+/// The kernel ends a worker with the run that started it.
+bool is_ending_here(const json& holder) {
+    if (holder.value("host", "") != host_name()) return false;
+    const int process = holder.value("pid", 0), parent = holder.value("parent", 0);
+    if (is_ending(process)) return true;
+    return holder.value("command", "").starts_with("/proc/self/exe ") &&
+           (is_ending(parent) || status_of(process, "PPid") != std::to_string(parent));
 }
 
 }  // namespace
 
-/// Waits for orphaned workers, at most a second.
+/// Waits for holders that have been killed.
 bool RunLock::lock_frames(int first, int last) {
-    constexpr int kTries = 50;
+    constexpr int kTries = 500;  // ten seconds: a process may have much memory to free
     const off_t count = off_t(last) - first + 1;
     for (int i = 0;; ++i) {
         if (lock_bytes(file_, F_OFD_SETLK, F_WRLCK, kFirstFrame + first, count)) return true;
         held_ = errno == EAGAIN || errno == EACCES;
-        bool is_ending = false;
+        bool waits = false;
         if (held_)
             kept_lines(read_all(file_), [&](const std::string&, const json& holder) {
-                is_ending |= overlaps(holder, {{first, last}}) && is_orphaned_worker(holder);
+                waits |= overlaps(holder, {{first, last}}) && is_ending_here(holder);
                 return false;
             });
-        if (!is_ending || i == kTries) return false;
+        if (!waits || i == kTries) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
 }
@@ -219,8 +231,9 @@ void RunLock::add_holder(const std::vector<int>& frames, const std::string& comm
     const std::vector<Range> ranges = ranges_of(frames);
     json list = json::array();
     for (const Range& range : ranges) list.push_back({range.first, range.last});
-    const json holder = {{"pid", getpid()},           {"host", host_name()}, {"since", now_text()},
-                         {"frames", text_of(ranges)}, {"ranges", list},      {"command", command}};
+    const json holder = {{"pid", getpid()},     {"parent", getppid()},       {"host", host_name()},
+                         {"since", now_text()}, {"frames", text_of(ranges)}, {"ranges", list},
+                         {"command", command}};
     holder_ = holder.dump(-1, ' ', false, json::error_handler_t::replace);
     // Lines of frames that are this run's now are of runs that were killed.
     replace_all(file_,
@@ -235,11 +248,10 @@ RunLock::~RunLock() {
         const std::string others = kept_lines(
             read_all(file_), [&](const std::string& line, const json&) { return line == holder_; });
         replace_all(file_, others);
-        if (others.empty()) unlink(path_.c_str());
+        if (others.empty()) unlink((folder_ / name_).c_str());
     }
     close(file_);
-    std::error_code in_use;
-    fs::remove(path_.parent_path(), in_use);  // only where nothing else is in it
+    rmdir((folder_ / name_).parent_path().c_str());  // only where nothing else is in it
 }
 
 }  // namespace aftershade

@@ -32,7 +32,8 @@ private:
     bool lock_frames(int first, int last);
     void add_holder(const std::vector<int>& frames, const std::string& command);
 
-    std::filesystem::path path_;
+    std::filesystem::path folder_;
+    std::string name_;  // below it
     std::string pattern_;
     std::string holder_;  // this run's line
     int file_ = -1;

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,17 +46,15 @@ struct RunReport {
     std::vector<FrameFailure> failures;
     std::vector<int> frames_non_finite;          ///< frames with NaN or infinite pixels, repaired ones too
     std::vector<std::string> objects_unmatched;  ///< ObjectMatches::unmatched()
-    std::vector<int> frames_left;        ///< not begun, after an interrupt or RunOptions::stop_on_error
-    std::optional<int> history_begin;    ///< the last frame that restarted history, where a step has any
-    bool history_saved = false;          ///< RunOptions::history_out was written
-    int frames_skipped = 0;              ///< missing, and MissingFrame::skip
-    int frames_unwritten = 0;            ///< rendered for what they leave to later frames
-    int frames_current = 0;              ///< finished by earlier runs; set by whoever leaves them out
-    std::vector<PassStatistics> passes;  ///< in the order of the passes
-    double read_ms = 0;                  ///< waiting for frames to be read and decoded
-    double write_ms = 0;                 ///< waiting for files to be written
-    double decode_ms = 0;                ///< reading and decoding, on all threads together
-    double encode_ms = 0;                ///< encoding and writing, on its thread
+    bool history_saved = false;                  ///< RunOptions::history_out was written
+    int frames_skipped = 0;                      ///< missing, and MissingFrame::skip
+    int frames_unwritten = 0;                    ///< rendered for what they leave to later frames
+    int frames_current = 0;                      ///< finished by earlier runs; set by whoever leaves them out
+    std::vector<PassStatistics> passes;          ///< in the order of the passes
+    double read_ms = 0;                          ///< waiting for frames to be read and decoded
+    double write_ms = 0;                         ///< waiting for files to be written
+    double decode_ms = 0;                        ///< reading and decoding, on all threads together
+    double encode_ms = 0;                        ///< encoding and writing, on its thread
     double wall_ms = 0;
     bool interrupted = false;
     gpu::ContextInfo gl;                    ///< of what the frames were drawn on

@@ -3,6 +3,7 @@
 #include "framework/capture/frame_range.h"
 #include "framework/core/content_hash.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 
 namespace aftershade {
 
@@ -18,11 +19,14 @@ RunState run_state(const std::string& pattern) {
 
 void make_state_folder(const RunState& state) {
     std::error_code failure;
-    fs::create_directories(state.state_folder(), failure);
-    if (failure)
-        throw Error(ExitCode::output,
-                    state.state_folder().string() + ": cannot be made: " + failure.message() +
-                        " (runs of several frames keep their journal there; --no-journal does without)");
+    fs::create_directories(state.folder, failure);
+    try {
+        make_folder_below(state.folder, ".aftershade");
+    } catch (const Error& error) {
+        throw Error(ExitCode::output, std::string(error.what()) +
+                                          " (runs of several frames keep their journal "
+                                          "there; --no-journal does without)");
+    }
 }
 
 }  // namespace aftershade

@@ -11,9 +11,10 @@ struct RunState {
     std::string output;            ///< "shot_#.exr": the output's name, whatever the frame
     std::string key;               ///< a hash of `output`, for names of files
     std::filesystem::path state_folder() const { return folder / ".aftershade"; }
-    std::filesystem::path journal() const { return state_folder() / "journal.jsonl"; }
-    std::filesystem::path lock() const { return state_folder() / ("lock-" + key); }
-    std::filesystem::path checkpoints() const { return state_folder() / "history" / key; }
+    std::filesystem::path journal() const { return folder / kJournal; }
+    std::string lock() const { return ".aftershade/lock-" + key; }            ///< below `folder`
+    std::string checkpoints() const { return ".aftershade/history/" + key; }  ///< likewise
+    static constexpr const char* kJournal = ".aftershade/journal.jsonl";      ///< likewise
 };
 
 /// Of an output's pattern. Patterns that differ in the number's width alone are one.

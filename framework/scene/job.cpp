@@ -12,6 +12,7 @@
 #include "framework/capture/light.h"
 #include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
+#include "framework/core/side_file.h"
 #include "framework/core/units.h"
 #include "framework/image/role.h"
 #include "framework/scene/rate_image.h"
@@ -192,7 +193,7 @@ private:
         header.data_window = header.display_window = {0, 0, job_.width_px - 1, job_.height_px - 1};
         header.camera = capture_camera(scene_, state_at(scene_, frame, time), job_.width_px, job_.height_px);
         const CaptureWriteOptions options = complete(header, frame, time, {});
-        const fs::path path = job_.folder / fmt::format("gbuffer_{:04}.exr", number);
+        const fs::path path = path_below(job_.folder, fmt::format("gbuffer_{:04}.exr", number));
         report_.files.push_back(path);
         writer_.write([image = std::move(image), header, path, options] {
             write_deep_capture(path, image, header, options);
@@ -244,7 +245,8 @@ private:
         write(std::move(capture), fmt::format("{}_{:04}.exr", name, frame), frame, frame,
               {{"aftershade/visibility", name}, {"aftershade/samples", settings.samples}});
         const fs::path rates = job_.folder / fmt::format("{}_rate_{:04}", name, frame);
-        for (const char* ending : {".exr", ".png"}) report_.files.push_back(rates.string() + ending);
+        for (const char* ending : {".exr", ".png"})
+            report_.files.push_back(path_below(job_.folder, rates.filename().string() + ending));
         writer_.write([rates, rate = std::move(picture.shading_rate)] {
             write_rate_exr(rates.string() + ".exr", rate);
             write_rate_png(rates.string() + ".png", rate);
@@ -254,7 +256,7 @@ private:
     void write(Capture capture, const std::string& name, int frame, double time,
                std::map<std::string, ExrValue> attributes) {
         const CaptureWriteOptions options = complete(capture.header, frame, time, std::move(attributes));
-        const fs::path path = job_.folder / name;
+        const fs::path path = path_below(job_.folder, name);
         report_.files.push_back(path);
         writer_.write([this, capture = std::move(capture), path, options] {
             for (const std::string& role : write_capture(path, capture, profile_, options))
@@ -294,7 +296,7 @@ private:
         if (!scene_.camera.focus_distance_m.is_constant()) document.camera.erase("focus_distance");
         if (std::all_of(scene_.lights.begin(), scene_.lights.end(), is_constant))
             document.lights = capture_lights(scene_, state);
-        const fs::path path = job_.folder / "capture.json";
+        const fs::path path = path_below(job_.folder, "capture.json");
         write_capture_document(path, document);
         report_.files.push_back(path);
     }

@@ -8,6 +8,7 @@
 
 #include "framework/core/atomic_file.h"
 #include "framework/core/document.h"
+#include "framework/core/side_file.h"
 #include "framework/serve/refusal.h"
 
 namespace aftershade::serve {
@@ -38,7 +39,7 @@ std::string EffectFiles::read(const std::string& name) const {
     if (std::ranges::find(all, name) == all.end())
         throw Refusal{404, "the effect's folder has no shader '" + name + "'"};
     std::string fault;
-    std::string text = read_regular_file(folder / name, kMaxDocumentBytes, fault);
+    std::string text = read_file_below(folder, name, kMaxDocumentBytes, fault);
     if (!fault.empty()) throw Refusal{409, (folder / name).string() + ": " + fault};
     return text;
 }
@@ -47,7 +48,7 @@ void EffectFiles::write(const std::string& name, const std::string& before, cons
     if (!why_not.empty()) throw Refusal{403, why_not};
     if (read(name) != before)
         throw Refusal{409, (folder / name).string() + " was changed by another program; nothing was written"};
-    write_text_file(folder / name, text);
+    write_text_file(path_below(folder, name), text);
 }
 
 EffectFiles effect_files(const EffectRegistry& effects, const std::string& id, bool read_only) {

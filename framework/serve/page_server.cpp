@@ -147,8 +147,8 @@ Response PageServer::metrics(const Request& request) {
 Response PageServer::command() const {
     const auto& frames = setup_.sequence.frames;
     const char* output = frames.size() == 1 ? "out.png" : "out_####.png";
-    return json_response({{"command", shell_line({"aftershade", "run", setup_.look.path().string(),
-                                                  setup_.capture, "-o", output})}});
+    return json_response({{"command", printed_command({"aftershade", "run", setup_.look.path().string(),
+                                                       setup_.capture, "-o", output})}});
 }
 
 /// Has the effects read again where their files are not those that were read.

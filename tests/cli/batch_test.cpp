@@ -122,6 +122,10 @@ TEST_F(Batch, HistoryBegunInTheMiddleOfAShotIsReportedWithItsRemedy) {
         return run(more, 0);
     };
     EXPECT_TRUE(says(chunk({"--frames", "3-4"}), warning));
+    EXPECT_TRUE(says(chunk({"--frames", "3-4", "--jobs", "2", "--warmup", "1", "--overwrite"}), warning));
+    EXPECT_TRUE(
+        says(chunk({"--frames", "1-4", "--jobs", "2", "--warmup", "0", "--overwrite"}),
+             "frame 3: the history of 'trail' restarts here, .*\\(leave --jobs out, or set --warmup\\)"));
     EXPECT_FALSE(says(chunk({"--frames", "1-2", "--history-out", "h"}), "warning"));
     EXPECT_FALSE(says(chunk({"--frames", "3-4", "--history-in", "h"}), "warning"));
     EXPECT_FALSE(

@@ -37,14 +37,16 @@ TEST_F(GoldenMessages, OfAFailureHaveSizeAndPlaceAndWhatIsAllowed) {
     EXPECT_EQ(result.exit_code, 2);
     for (const std::string& text : {result.err, junit()}) {
         EXPECT_NE(text.find("differ by more than fail 0.004, 1 allowed"), text.npos) << text;
-        EXPECT_TRUE(std::regex_search(text, std::regex(R"(largest difference 0\.\d+ at \(31, 17\) B, )"))) << text;
+        EXPECT_TRUE(std::regex_search(text, std::regex(R"(largest difference 0\.\d+ at \(31, 17\) B, )")))
+            << text;
     }
     EXPECT_EQ(result.err.find(" may"), result.err.npos) << result.err;
 }
 
 TEST_F(GoldenMessages, TellAReasonOfSeveralImagesOnce) {
     approve();
-    write_text(folder_ / "lens.json", std::regex_replace(std::string(kLens), std::regex("hexagon"), "square"));
+    write_text(folder_ / "lens.json",
+               std::regex_replace(std::string(kLens), std::regex("hexagon"), "square"));
     const CommandResult result = run();
     EXPECT_EQ(count(result.err, "the look or an effect has changed since it was approved"), 1u) << result.err;
     EXPECT_NE(result.err.find("lens.color.0001, lens.color.0002: the look"), result.err.npos) << result.err;
@@ -52,7 +54,8 @@ TEST_F(GoldenMessages, TellAReasonOfSeveralImagesOnce) {
 
 TEST_F(GoldenMessages, OfAPointerOfGitLfsNameTheRemedyAlone) {
     approve();
-    write_text(image("corner.color.0001"), "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 9\n");
+    write_text(image("corner.color.0001"),
+               "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 9\n");
     const CommandResult result = reported();
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_NE(result.err.find("git lfs pull"), result.err.npos) << result.err;
@@ -62,28 +65,34 @@ TEST_F(GoldenMessages, OfAPointerOfGitLfsNameTheRemedyAlone) {
 
 TEST_F(GoldenMessages, HaveTheErrorsOfAShaderInTheSnippet) {
     fs::create_directories(folder_ / "effects/bad");
-    write_text(folder_ / "effects/bad/effect.json", R"({ "aftershade": 1, "id": "bad", "version": "1.0.0", "summary": "Bad.",
+    write_text(folder_ / "effects/bad/effect.json",
+               R"({ "aftershade": 1, "id": "bad", "version": "1.0.0", "summary": "Bad.",
         "inputs": { "color": { "role": "color", "doc": "Light." } }, "outputs": { "color": { "role": "color", "doc": "Light." } },
         "passes": [ { "name": "p", "shader": "p.frag", "reads": [{ "color": "pixel" }], "writes": ["color"] } ] })");
     write_text(folder_ / "effects/bad/p.frag",
                "#version 450 core\n#include <pass>\nvoid main() { out_color = vec4(no_such_name); }\n");
-    write_suite(R"("fail": 0.004)", R"(, { "name": "bad", "steps": [ { "effect": "bad" } ], "capture": "in_0001.exr" })");
+    write_suite(R"("fail": 0.004)",
+                R"(, { "name": "bad", "steps": [ { "effect": "bad" } ], "capture": "in_0001.exr" })");
     reported({"--filter", "bad", "--effect-path", "effects"});
     const std::string text = junit();
     const std::size_t message = text.find("message=\"");
-    EXPECT_NE(text.substr(message, text.find("\">", message) - message).find("no_such_name"), text.npos) << text;
+    EXPECT_NE(text.substr(message, text.find("\">", message) - message).find("no_such_name"), text.npos)
+        << text;
 }
 
 TEST_F(GoldenMessages, NameSidecarsAndImagesOfCasesThatAreNoMore) {
     approve();
-    write_text(folder_ / "golden.json",
-               R"({ "aftershade": 1, "cases": [ { "name": "other", "steps": [], "capture": "in_0001.exr" } ] })");
+    write_text(
+        folder_ / "golden.json",
+        R"({ "aftershade": 1, "cases": [ { "name": "other", "steps": [], "capture": "in_0001.exr" } ] })");
     fs::remove(image("corner.color.0001"));
     const CommandResult result = run();
-    EXPECT_NE(result.err.find("corner.color.0001.json: no case gives this golden: a sidecar without an image"),
-              result.err.npos)
+    EXPECT_NE(
+        result.err.find("corner.color.0001.json: no case gives this golden: a sidecar without an image"),
+        result.err.npos)
         << result.err;
-    EXPECT_NE(result.err.find("lens.color.0001.exr: no case gives this golden; remove it"), result.err.npos) << result.err;
+    EXPECT_NE(result.err.find("lens.color.0001.exr: no case gives this golden; remove it"), result.err.npos)
+        << result.err;
 }
 
 TEST_F(GoldenMessages, NameWhatNoLimitHolds) {
@@ -95,7 +104,8 @@ TEST_F(GoldenMessages, NameWhatNoLimitHolds) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.err.find("(not judged: A)"), result.err.npos) << result.err;
     EXPECT_NE(junit().find("<system-out>not judged: A</system-out>"), std::string::npos) << junit();
-    EXPECT_EQ(case_of(Json::parse(read_text(folder_ / "report/report.json")), "corner")["allowances"], "not judged: A");
+    EXPECT_EQ(case_of(Json::parse(read_text(folder_ / "report/report.json")), "corner")["allowances"],
+              "not judged: A");
 }
 
 TEST_F(GoldenMessages, OfAnEarlierRunDoNotStayWhereOneEndsEarly) {
@@ -132,6 +142,20 @@ TEST_F(GoldenMessages, OfAnEarlyEndReplaceNoOtherFile) {
     write_text(folder_ / "site/report.json", "{ \"mine\": 1 }");
     EXPECT_EQ(run({"--report", "site"}).exit_code, 64);
     EXPECT_EQ(read_text(folder_ / "site/report.json"), "{ \"mine\": 1 }");
+}
+
+TEST_F(GoldenMessages, OfAGoldensNameIsOneLine) {
+    approve();
+    for (const char* name :
+         {"corner.color.0001@x\nFAILED forged: all is lost", "stray\nFAILED forged: all is lost"}) {
+        const std::filesystem::path file = image(name);
+        std::filesystem::copy(image("corner.color.0001"), file);
+        const CommandResult result = run();
+        EXPECT_NE(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.err.find("\nFAILED forged"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("?FAILED forged"), std::string::npos) << result.err;
+        std::filesystem::remove(file);
+    }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SIGINT, SIGTERM and SIGKILL in the middle of a run, and how it goes on.
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "tests/cli/batch_work.h"
@@ -32,8 +33,9 @@ protected:
         EXPECT_EQ(files.size(), std::size_t(kFrames));
         return files;
     }
-    CommandResult interrupted(const std::vector<std::string>& arguments, int signal) {
-        Command command(aftershade_words(arguments), folder_.path());
+    CommandResult interrupted(const std::vector<std::string>& arguments, int signal,
+                              const Environment& environment = {}) {
+        Command command(aftershade_words(arguments), folder_.path(), environment);
         EXPECT_TRUE(command.wait_for_lines(3));
         command.send(signal);
         CommandResult result = command.wait();
@@ -41,25 +43,28 @@ protected:
         EXPECT_TRUE(temporaries().empty());
         return result;
     }
-    /// The line that it prints, as a shell runs it.
-    CommandResult go_on(const CommandResult& result) {
+    static std::string last_line(const CommandResult& result) {
         const auto lines = lines_of_text(result.err);
-        for (std::size_t i = 0; i + 1 < lines.size(); ++i)
-            if (lines[i].starts_with("interrupted after ")) {
-                EXPECT_EQ(lines[i + 1].find("  "), 0u) << "a line of its own";
-                return Command({"/bin/sh", "-c", lines[i + 1]}, folder_.path()).wait();
-            }
-        ADD_FAILURE() << "no command to resume\n" << result.err;
-        return {};
+        return lines.empty() ? "" : lines.back();
+    }
+    /// Runs what it prints last, as it is, in a shell that stands elsewhere and knows nothing of the run.
+    static CommandResult go_on(const CommandResult& result) {
+        EXPECT_EQ(last_line(result).find("  cd "), 0U) << result.err;
+        EXPECT_EQ(result.err.find("to resume"), result.err.rfind("to resume")) << result.err;
+        return Command({"/bin/bash", "-c", last_line(result)}, "/").wait();
     }
 };
 
 TEST_F(Interruption, PrintsTheCommandThatRendersTheRest) {
     const auto whole = undisturbed("spread.json");
+    fs::remove_all(folder_ / ".aftershade");
     const CommandResult first = interrupted(sequence("spread.json"), SIGINT);
     const std::size_t done = lines_of_text(first.out).size();
     ASSERT_LT(done, std::size_t(kFrames));
     EXPECT_EQ(outputs().size(), done);
+    EXPECT_NE(first.err.find("interrupted after " + std::to_string(done) + " of 120 frames; to resume:\n  "),
+              std::string::npos)
+        << first.err;
     const CommandResult rest = go_on(first);
     EXPECT_EQ(rest.exit_code, 0) << rest.err;
     EXPECT_EQ(lines_of_text(rest.out).size(), kFrames - done) << "nothing was rendered twice";
@@ -67,30 +72,94 @@ TEST_F(Interruption, PrintsTheCommandThatRendersTheRest) {
 }
 
 TEST_F(Interruption, GoesOnWithItsHistoryToTheBit) {
-    const auto whole = undisturbed("trail.json");
-    const CommandResult first =
-        interrupted(sequence("trail.json", {"--frames=1-120", "--history-out", "the history"}), SIGTERM);
+    const std::vector<std::string> arguments =
+        sequence("trail.json", {"--frames=1-120", "--history-out", "the history"});
+    ASSERT_EQ(run_aftershade(arguments, folder_.path()).exit_code, 0);
+    const auto whole = contents(folder_.path());
+    for (const auto& [name, bytes] : outputs()) fs::remove(folder_ / name);
+    fs::remove(folder_ / "the history");
+    fs::remove_all(folder_ / ".aftershade");
+    const CommandResult first = interrupted(arguments, SIGTERM);
+    EXPECT_FALSE(fs::exists(folder_ / "the history")) << "of some frames it would pass for that of all";
+    EXPECT_NE(first.err.find("from the last checkpoint or the beginning of the shot"), std::string::npos)
+        << first.err;
     const std::size_t done = lines_of_text(first.out).size();
     const CommandResult rest = go_on(first);
     EXPECT_EQ(rest.exit_code, 0) << rest.err;
     EXPECT_EQ(rest.err.find("warning"), std::string::npos) << rest.err;
     EXPECT_EQ(lines_of_text(rest.out).size(), kFrames - done);
+    auto found = contents(folder_.path());
+    found[".aftershade/journal.jsonl"] = whole.at(".aftershade/journal.jsonl");  // with times
+    EXPECT_EQ(found, whole);
+}
+
+TEST_F(Interruption, OfAResumedRunBeforeItsFirstNewFrameKeepsTheHistory) {
+    const auto whole = undisturbed("trail.json");
+    fs::remove_all(folder_ / ".aftershade");
+    const CommandResult first = interrupted(sequence("trail.json"), SIGINT);
+    const std::size_t done = outputs().size();
+    Command second(aftershade_words(sequence("trail.json")), folder_.path());
+    ASSERT_TRUE(second.wait_until_it_handles(SIGINT));
+    second.send(SIGINT);
+    const CommandResult again = second.wait();
+    ASSERT_EQ(again.exit_code, int(ExitCode::interrupted)) << again.err;
+    ASSERT_EQ(outputs().size(), done);
+    EXPECT_EQ(go_on(again).exit_code, 0);
     EXPECT_EQ(outputs(), whole);
 }
 
-TEST_F(Interruption, BeginsTheShotAgainWhereItsHistoryWasNotKept) {
-    write_text(folder_ / "capture.json",
-               R"({ "aftershade": 1, "frames": "in_####.exr", "range": "1-120", "cuts": [3] })");
-    std::vector<std::string> arguments = sequence("trail.json");
-    arguments[2] = "capture.json";
-    run_aftershade(arguments, folder_.path());
+TEST_F(Interruption, OfAChunkPrintsItsNumberAndTheVariablesThatItReads) {
+    ASSERT_EQ(
+        run_aftershade(sequence("trail.json", {"--chunk", "2/3", "--warmup", "4"}), folder_.path()).exit_code,
+        0);
     const auto whole = outputs();
     for (const auto& [name, bytes] : whole) fs::remove(folder_ / name);
-    const CommandResult first = interrupted(arguments, SIGINT);
-    EXPECT_NE(first.err.find("--frames 3-120"), std::string::npos) << first.err;
-    EXPECT_NE(first.err.find("--history-out keeps it"), std::string::npos) << first.err;
+    fs::remove_all(folder_ / ".aftershade");
+    const CommandResult first =
+        interrupted(sequence("trail.json", {"--chunk", "auto/3", "--warmup", "4"}), SIGTERM,
+                    {{"JOB_COMPLETION_INDEX", "1"}, {"AFTERSHADE_ALLOW_PATH", "/it's here"}});
+    EXPECT_NE(last_line(first).find("AFTERSHADE_ALLOW_PATH='/it'\\''s here'"), std::string::npos);
+    EXPECT_NE(last_line(first).find("--chunk 2/3"), std::string::npos);
+    EXPECT_EQ(last_line(first).find("auto"), std::string::npos);
     EXPECT_EQ(go_on(first).exit_code, 0);
     EXPECT_EQ(outputs(), whole);
+}
+
+TEST_F(Interruption, PrintsNamesSoThatAShellReadsThemBack) {
+    const std::string odd = "it's \"a\" $HOME\n`x`";
+    fs::rename(folder_ / "trail.json", folder_ / ("-" + odd));
+    const auto arguments = [&](const std::string& out) {
+        return std::vector<std::string>{"run",           "-o",      out + "/out_####.exr",
+                                        "--effect-path", "effects", "--backend",
+                                        "software",      "--jobs",  "2",
+                                        "--warmup=3",    "--",      "-" + odd,
+                                        "in_####.exr"};
+    };
+    ASSERT_EQ(run_aftershade(arguments("whole"), folder_.path()).exit_code, 0);
+    const CommandResult first = interrupted(arguments(odd), SIGINT);
+    const CommandResult rest = go_on(first);
+    EXPECT_EQ(rest.exit_code, 0) << rest.err;
+    auto whole = contents(folder_ / "whole"), found = contents(folder_ / odd);
+    whole.erase(".aftershade/journal.jsonl");
+    found.erase(".aftershade/journal.jsonl");
+    EXPECT_EQ(found, whole);
+}
+
+TEST_F(Interruption, SaysWhichOptionRendersEveryFrameAgain) {
+    const CommandResult first = interrupted(sequence("spread.json", {"--no-journal"}), SIGINT);
+    EXPECT_NE(first.err.find("to resume, with every frame rendered again (--no-journal):"), std::string::npos)
+        << first.err;
+    EXPECT_EQ(go_on(first).exit_code, 0);
+    EXPECT_EQ(outputs().size(), std::size_t(kFrames));
+}
+
+TEST_F(Interruption, IsAnObjectAmongObjects) {
+    const CommandResult first = interrupted(sequence("spread.json", {"--progress", "json"}), SIGINT);
+    for (const std::string& line : lines_of_text(first.err)) EXPECT_EQ(line[0], '{') << line;
+    const auto event = nlohmann::json::parse(last_line(first));
+    EXPECT_EQ(event.at("event"), "interrupted");
+    EXPECT_EQ(Command({"/bin/bash", "-c", event.at("command").get<std::string>()}, "/").wait().exit_code, 0);
+    EXPECT_EQ(outputs().size(), std::size_t(kFrames));
 }
 
 TEST_F(Interruption, ASecondSignalEndsItAtOnce) {

@@ -76,5 +76,24 @@ TEST_F(Merge, TakesAFrameAsTheLastReportHasIt) {
     merge({"all.json", "reports/second.json"}, 0);
 }
 
+TEST_F(Merge, CountsNoReportTwiceNorFramesThatAreNone) {
+    report("0001.json", frame(1, "done") + "," + frame(2, "done"));
+    report("0002.json", frame(2, "done") + "," + frame(3, "done"));
+    report("0003.json", R"({ "frame": 1e300, "outcome": "done" })");
+    report("0004.json", R"({ "frame": 99999999999, "outcome": "done" })");
+    fs::create_symlink("0001.json", folder_ / "reports/0005.json");
+    const CommandResult result = merge({"reports"}, 1);
+    EXPECT_NE(result.err.find("reports/0002.json: has the frames 2 of reports/0001.json, too"),
+              std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find("reports/0003.json: has a frame 1e+300, which is not a whole number"),
+              std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find("reports/0004.json: has a frame 99999999999, "), std::string::npos)
+        << result.err;
+    EXPECT_NE(result.err.find("reports/0005.json: is a symbolic link"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("2 of 2 frames done; 1 of 5 tasks reported"), std::string::npos) << result.err;
+}
+
 }  // namespace
 }  // namespace aftershade::test

@@ -172,6 +172,25 @@ TEST(AtomicFiles, HaveTemporaryNamesThatAFileSystemTakes) {
     EXPECT_EQ(folder.file_count(), 1u);
 }
 
+TEST(AtomicFiles, TakeAnotherTemporaryNameWhereALinkIsPlanted) {
+    const TemporaryFolder folder;
+    write_text(folder / "secret", "secret");
+    fs::path next;
+    {
+        const AtomicFile file(folder / "f");
+        next = file.temporary_path();
+    }
+    // The counter goes on from here.
+    const std::string text = next.string();
+    const std::size_t dash = text.rfind('-');
+    const unsigned number = unsigned(std::stoul(text.substr(dash + 1)));
+    for (unsigned i = 1; i <= 3; ++i)
+        fs::create_symlink("secret", text.substr(0, dash + 1) + std::to_string(number + i) + ".tmp");
+    write_text_file(folder / "f", "text");
+    EXPECT_EQ(read_text(folder / "f"), "text");
+    EXPECT_EQ(read_text(folder / "secret"), "secret");
+}
+
 TEST(OutputFolder, IsMadeWithTheFoldersAboveIt) {
     const TemporaryFolder folder;
     prepare_output_folder(folder / "a/b/out.exr");

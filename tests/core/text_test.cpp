@@ -1,7 +1,9 @@
 #include "framework/core/text.h"
 
+#include <cstdio>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -70,6 +72,27 @@ TEST(TextFor, XmlHasNothingThatWouldBeMarkup) {
     EXPECT_EQ(xml_text("a<b>&\"c\" 'd'"), "a&lt;b&gt;&amp;&quot;c&quot; 'd'");
     EXPECT_EQ(xml_text("a\tb\nc\x01"), "a\tb&#10;c?");
     EXPECT_EQ(xml_text("mm\u00b2\xff\uffff"), "mm\u00b2????");
+}
+
+TEST(TextFor, ACommandThatIsPrintedIsOneLineThatBashReadsBack) {
+    std::vector<std::string> words{
+        "/bin/echo", "-n",           "",       "a b",          "it's",         "$HOME \"*\" `x` \\n !!",
+        "-dash",     "--",           "~",      "a=b c",        "line\nline\n", "\033[2J\x7f\r\t",
+        "\xff'\\8",  "\u00e4\u00a0", "\u0085", "#;&|<>(){}[]?"};
+    const std::string command = printed_command(words);
+    EXPECT_EQ(printable(command), command) << "nothing that a terminal acts on";
+    words[0] = "printf";
+    words[1] = "%s\\0";
+    const std::string script = printed_command(words);
+    FILE* const pipe = popen(("exec bash -c " + shell_line({script})).c_str(), "r");
+    ASSERT_NE(pipe, nullptr);
+    std::string read;
+    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) read += char(c);
+    EXPECT_EQ(pclose(pipe), 0);
+    std::string expected;
+    for (std::size_t i = 2; i < words.size(); ++i) expected += words[i] + '\0';
+    EXPECT_EQ(read, expected);
+    EXPECT_EQ(printed_command({"run", "a/b.exr", "a b"}), "run a/b.exr 'a b'");
 }
 
 TEST(TextFor, AShellIsQuotedWhereItMustBe) {

@@ -1,5 +1,6 @@
 // What runs keep in .aftershade: the journal and the locks.
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -179,6 +180,26 @@ TEST_F(RunLockTest, OfAKilledProcessIsFree) {
     ASSERT_FALSE(fs::is_empty(folder_ / ".aftershade")) << "the killed process could not clear up";
     { const RunLock next(pattern(), {1, 2}, "next"); }
     EXPECT_EQ(folder_.file_count(), 0u);
+}
+
+TEST_F(RunLockTest, WaitsForAWorkerWhoseRunWasKilled) {
+    const pid_t run = fork();
+    if (run == 0) {
+        if (fork() == 0) {
+            new RunLock(pattern(), {1, 2}, "/proc/self/exe run");
+            write_text(folder_ / "held", "");
+            while (getppid() != 1 && !fs::exists(folder_ / "killed")) usleep(1000);
+            usleep(1'500'000);  // memory to free, on a busy machine
+            _exit(0);
+        }
+        pause();
+    }
+    while (!fs::exists(folder_ / "held")) usleep(1000);
+    EXPECT_NE(refusal("out_####.exr", {2}), "") << "its run goes on";
+    kill(run, SIGKILL);
+    write_text(folder_ / "killed", "");
+    EXPECT_EQ(refusal("out_####.exr", {2}), "");
+    waitpid(run, nullptr, 0);
 }
 
 TEST_F(RunLockTest, OfAnOutputWithoutANumberIsOneForAllFrames) {
