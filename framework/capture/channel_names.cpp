@@ -7,6 +7,7 @@
 
 #include "framework/core/diagnostics.h"
 #include "framework/core/text.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -57,16 +58,23 @@ std::vector<std::string> channels_of_motion(const std::vector<std::string>& chan
 }
 
 std::string role_in_file_name(std::string_view stem) {
-    static const std::map<std::string, std::string, std::less<>> kRoles = {
-        {"depth", "depth"},      {"zdepth", "depth"},      {"z", "depth"},         {"normal", "normal"},
-        {"normals", "normal"},   {"velocity", "velocity"}, {"motion", "velocity"}, {"vector", "velocity"},
-        {"vectors", "velocity"}, {"position", "position"}};
+    static const std::map<std::string, RoleKind, std::less<>> kOtherWords = {{"zdepth", RoleKind::distance},
+                                                                             {"z", RoleKind::distance},
+                                                                             {"motion", RoleKind::motion},
+                                                                             {"vector", RoleKind::motion},
+                                                                             {"vectors", RoleKind::motion}};
     const std::string name = canonical_name(stem);
-    std::string_view word;
+    std::string word;
     for (const std::string_view part : split(name, '.'))
         if (!part.empty() && part.find_first_not_of("0123456789") != std::string_view::npos) word = part;
-    const auto role = kRoles.find(word);
-    return role == kRoles.end() ? "" : role->second;
+    const auto other = kOtherWords.find(word);
+    for (const ChannelRole& role : channel_roles()) {
+        const bool is_data = role.kind == RoleKind::distance || role.kind == RoleKind::motion ||
+                             role.kind == RoleKind::direction || role.kind == RoleKind::place;
+        const bool is_other = other != kOtherWords.end() && other->second == role.kind;
+        if (is_data && (is_other || word == role.name || word == role.name + "s")) return role.name;
+    }
+    return "";
 }
 
 }  // namespace aftershade

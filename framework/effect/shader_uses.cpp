@@ -73,7 +73,10 @@ bool may_be_written_at(const std::vector<Token>& tokens, std::size_t i, const To
         if (is_at(at, '.')) at += 2;
         else at = behind_brackets(tokens, at);
     }
-    const bool is_argument = (is_before(1, '(') || is_before(1, ',')) && (is_at(at, ')') || is_at(at, ','));
+    // A constructor changes nothing: "float(x)".
+    const bool converts = is_before(1, '(') && i >= 2 && is_value_type(tokens[i - 2].text);
+    const bool is_argument =
+        !converts && (is_before(1, '(') || is_before(1, ',')) && (is_at(at, ')') || is_at(at, ','));
     if (is_argument) return true;
     if (is_at(at, '=')) return !is_at(at + 1, '=');
     for (const char c : {'+', '-', '*', '/', '%', '&', '|', '^', '<', '>'})

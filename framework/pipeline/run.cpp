@@ -278,8 +278,8 @@ private:
         constexpr double kFewPixels = 0.01;  // highlights
         if (is_cut_said_ || files.share_cut <= kFewPixels || !observer_.light_cut) return;
         observer_.light_cut(
-            "a PNG ends at 1, and more than 1 % of its pixels are brighter; the effect "
-            "view_transform, as the last step, keeps them apart");
+            "a PNG ends at 1, and more than 1 % of its pixels are brighter; a last step that makes "
+            "display, as a tone mapper does, keeps them apart");
         is_cut_said_ = true;
     }
 

@@ -137,17 +137,6 @@ TEST(Output, NeverReplacesTheFileOfARole) {
     EXPECT_EQ(read_text(folder / "z.0001.exr"), before);
 }
 
-TEST(Output, RefusesToStoreIdsWithLoss) {
-    const TemporaryFolder folder;
-    write_capture(make_capture({.width = 16, .height = 9}), folder / "in_0001.exr");
-    const CommandResult result = run(folder, kEmptyLook,
-                                     {(folder / "in_0001.exr").string(), "-o", (folder / "out.exr").string(),
-                                      "--output-roles", "color,object_id", "--compression", "dwaa"});
-    EXPECT_EQ(result.exit_code, 6);
-    EXPECT_NE(result.err.find("object_id.I"), std::string::npos) << result.err;
-    EXPECT_FALSE(fs::exists(folder / "out.exr"));
-}
-
 TEST(Output, CropsToTheDisplayWindow) {
     const TemporaryFolder folder;
     Image image(8, 6, 3);

@@ -93,7 +93,7 @@ TEST_F(Slip, LightThatAPngCutsIsSaidOnce) {
             run_aftershade({"run", "look.json", "in_####.exr", "-o", output}, folder_.path());
         EXPECT_EQ(result.exit_code, 0) << result.err;
         int times = 0;
-        const std::string name = "the effect view_transform";
+        const std::string name = "a last step that makes display";
         for (std::size_t at = 0; (at = result.err.find(name, at)) != std::string::npos; ++at) ++times;
         return times;
     };
