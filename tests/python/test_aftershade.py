@@ -192,7 +192,7 @@ def test_a_sequence_says_that_its_pictures_have_two_sizes(host, tmp_path):
     capture = aftershade.Capture(frame_arrays(24, 16), frame=2)
     aftershade.Look({"aftershade": 1, "steps": []}, host=host).render(capture).write(tmp_path / "f_0002.exr")
     (note,) = both_ways(host, tmp_path, 2).notes
-    assert "its display window has 24 x 16 px, that of" in note and "f_0001.exr has 48 x 32 px" in note
+    assert "its display window has 24 x 16 px, that of" in note and "f_0001.exr has 48 x 32" in note
 
 
 def test_threads_may_share_a_host(host):
