@@ -138,20 +138,22 @@ TEST(UsageCheck, NamesThePlaceOfWhatIsNotUsed) {
     EXPECT_TRUE(lines[1].ends_with("error: no shader uses 'MODE'")) << lines[1];
 }
 
+/// The faults of the sound effect whose second shader ends with these statements, in which `light` is a vec4.
+Lines faults_with_statements(const std::string& statements) {
+    Sound effect;
+    effect.folder.write("b.frag",
+                        "#version 450 core\n#include <pass>\n#include \"mode.glsl\"\n"
+                        "void put(out vec4 to) { to = vec4(0); }\nvoid main() {\n"
+                        "    vec4 light = mode() * small_size.x * textureLod(color, vec2(0), 0);\n"
+                        "    light *= float(param.taps);\n    " +
+                            statements + "\n}\n");
+    return effect.faults();
+}
+
 TEST(UsageCheck, RefusesATargetThatItsShaderOnlyReads) {
-    const auto faults_with = [](const std::string& statements) {
-        Sound effect;
-        effect.folder.write("b.frag",
-                            "#version 450 core\n#include <pass>\n#include \"mode.glsl\"\n"
-                            "void put(out vec4 to) { to = vec4(0); }\nvoid main() {\n"
-                            "    vec4 light = mode() * small_size.x * textureLod(color, vec2(0), 0);\n"
-                            "    light *= float(param.taps);\n    " +
-                                statements + "\n}\n");
-        return effect.faults();
-    };
     for (const char* reads : {"light = out_color;", "if (out_color == light) discard;",
                               "light += out_color.rgbr;", "light = light + out_color;"}) {
-        const Lines lines = faults_with(reads);
+        const Lines lines = faults_with_statements(reads);
         ASSERT_EQ(lines.size(), 1U) << reads << ::testing::PrintToString(lines);
         EXPECT_NE(lines[0].find("pass 'two': 'b.frag' has 'out_color' but assigns nothing to it"),
                   std::string::npos)
@@ -160,24 +162,15 @@ TEST(UsageCheck, RefusesATargetThatItsShaderOnlyReads) {
     for (const char* writes :
          {"out_color = light;", "out_color.rgb = light.rgb;", "out_color[1] += light.g;", "put(out_color);",
           "light = out_color = light;", "++out_color;", "out_color--;"})
-        EXPECT_EQ(faults_with(writes), Lines{}) << writes;
+        EXPECT_EQ(faults_with_statements(writes), Lines{}) << writes;
 }
 
 TEST(UsageCheck, RefusesVariablesThatAreReadButNeverAssigned) {
-    const auto faults_with = [](const std::string& statements) {
-        Sound effect;
-        effect.folder.write("b.frag",
-                            "#version 450 core\n#include <pass>\n#include \"mode.glsl\"\n"
-                            "void put(out vec4 to) { to = vec4(0); }\nvoid main() {\n"
-                            "    vec4 light = mode() * small_size.x * textureLod(color, vec2(0), 0);\n"
-                            "    light *= float(param.taps);\n    " +
-                                statements + "\n    out_color = light;\n}\n");
-        return effect.faults();
-    };
+    const std::string kWrites = " out_color = light;";
     for (const char* reads :
          {"float at[4]; light *= at[int(light.x)];", "vec4 more; light += more;",
           "mat2 turn; light.xy = turn * light.xy;", "int at[2], to[3]; light.x = float(at[to[1]]);"}) {
-        const Lines lines = faults_with(reads);
+        const Lines lines = faults_with_statements(reads + kWrites);
         ASSERT_EQ(lines.size(), 1U) << reads << ::testing::PrintToString(lines);
         EXPECT_NE(lines[0].find("is read, but nothing is assigned to it"), std::string::npos) << lines[0];
     }
@@ -188,7 +181,7 @@ TEST(UsageCheck, RefusesVariablesThatAreReadButNeverAssigned) {
           "float x; for (int i = 0; i < 3; ++i) { if (i == 1) x = 1.0; } light *= x;",
           "bool is_lit; is_lit = light.x > 0.0; if (is_lit) light *= 2.0;", "float unused;",
           "float more[2] = float[2](1.0, 2.0); light *= more[0];"})
-        EXPECT_EQ(faults_with(sound), Lines{}) << sound;
+        EXPECT_EQ(faults_with_statements(sound + kWrites), Lines{}) << sound;
 }
 
 TEST(UsageCheck, HoldsEffectsToWhetherTheyUseTheLights) {
