@@ -43,7 +43,7 @@ struct CaptureHeader {
     /// From the first frame of the capture, by which CaptureReader reads: what is otherwise.
     std::vector<std::string> differences;
     bool keeps_alpha = false;  ///< opaque pictures of it have an alpha, too: those of the capture are alike
-    Window data_window;               ///< colour's: the working grid
+    Window data_window;        ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
     int layer_count = 1;                   ///< of a deep capture, and of capture.json's "layers"
@@ -151,7 +151,7 @@ private:
     void decide(const std::vector<int>& files, FirstFrame& first) const;
     /// nullptr where no frame decides for others.
     const FirstFrame* first_frame() const;
-    /// Of one layer of the capture, which outlives `own`.
+    /// A reader of one layer of the capture. `own` must outlive it.
     CaptureReader layer_reader(const Sequence& own, std::size_t layer) const;
     std::unique_ptr<FrameFile> open_file(const std::filesystem::path& path, const std::string& role,
                                          int deep_layers, CaptureHeader& header) const;

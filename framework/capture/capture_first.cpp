@@ -48,7 +48,7 @@ std::vector<int> CaptureReader::deciding_files() const {
 }
 
 void CaptureReader::decide(const std::vector<int>& files, FirstFrame& first) const {
-    // Of a capture whose files are gone each frame says so; a search of all would take minutes.
+    // If every file is gone, each frame reports that itself; searching all of them would take minutes.
     constexpr std::size_t kMostTries = 1000;
     // Looks come and go while a reader lives: what they name does not decide.
     Sequence unnamed = sequence_;
@@ -197,10 +197,10 @@ void CaptureReader::compare_with_first(CaptureHeader& header, const Chromaticiti
                                      ", and are converted to these");
     const Window &own = header.display_window, &others = other.display_window;
     if (own.width() != others.width() || own.height() != others.height())
-        header.differences.push_back(
-            "its display window has " + std::to_string(own.width()) + " x " + std::to_string(own.height()) +
-            " px, that of " + other.path.string() + " has " + std::to_string(others.width()) + " x " +
-            std::to_string(others.height()));
+        header.differences.push_back("its display window has " + std::to_string(own.width()) + " x " +
+                                     std::to_string(own.height()) + " px, that of " + other.path.string() +
+                                     " has " + std::to_string(others.width()) + " x " +
+                                     std::to_string(others.height()));
     if (header.pixel_aspect != other.pixel_aspect)
         header.differences.push_back("its pixel aspect is " + format_number(double(header.pixel_aspect)) +
                                      ", that of " + other.path.string() + " is " +

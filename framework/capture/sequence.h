@@ -39,10 +39,10 @@ struct LayerSource {
 struct Sequence {
     std::vector<int> frames;       ///< in the order to be run
     bool frames_declared = false;  ///< by a capture.json's range or a bare file, not by what lies on disk
-    /// Of the whole capture, whatever part of it is run; the first that can be read decides how all frames
-    /// are read (CaptureReader). Empty: `frames` are all.
+    /// All frames of the capture, even where only some are run. The first readable one decides how all are
+    /// read (CaptureReader). If empty, `frames` has them all.
     std::vector<int> whole;
-    FramePattern files{""};        ///< absolute, or relative to the working directory
+    FramePattern files{""};                          ///< absolute, or relative to the working directory
     std::map<std::string, FramePattern> role_files;  ///< roles that lie in files of their own
     std::map<std::string, RoleDecoding> channels;    ///< of capture.json, instead of the profile's
     std::string profile = "auto";
@@ -97,7 +97,8 @@ FrameGaps find_gaps(std::span<const int> frames);
 /// Frames that exist for a pattern, sorted.
 std::vector<int> find_frames(const FramePattern& pattern);
 
-/// Throws Error(ExitCode::capture) where the disk has none of the sequence's frames: each would fail by itself.
+/// Throws Error(ExitCode::capture) where the disk has none of the sequence's frames: each would fail by
+/// itself.
 void require_some_file(const Sequence& sequence);
 
 }  // namespace aftershade

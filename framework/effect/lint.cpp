@@ -97,7 +97,7 @@ private:
                              "it would blend with nothing");
     }
 
-    /// Sub-frames begin anew with each frame.
+    /// An effect that accumulates sub-frames needs no warm-up: each frame starts from nothing.
     void warmup() {
         if (manifest_.warmup || manifest_.accumulates_subframes) return;
         diagnostics_.warning({(manifest_.folder / "effect.json").string()},

@@ -8,19 +8,19 @@
 
 namespace aftershade {
 
-/// PNG specification (third edition), 4.3: cICP before iCCP before sRGB before gAMA and cHRM. Without any, the
-/// samples are sRGB.
+/// PNG specification (third edition), 4.3: cICP before iCCP before sRGB before gAMA and cHRM. Without any,
+/// the samples are sRGB.
 struct PngColor {
-    /// "sRGB"; else what only a colour management could show: "ICC profile 'P3' (checksum 1a2b3c4d)", "cICP 9 16 0
-    /// 1", "primaries 0.7080 0.2920 ...".
+    /// "sRGB"; else what only a colour management could show: "ICC profile 'P3' (checksum 1a2b3c4d)", "cICP 9
+    /// 16 0 1", "primaries 0.7080 0.2920 ...".
     std::string space = "sRGB";
-    /// The value of gAMA, where it differs from sRGB's and no other chunk counts: light is the sample to the power
-    /// 1 / gamma.
+    /// The value of gAMA, where it differs from sRGB's and no other chunk counts: light is the sample to the
+    /// power 1 / gamma.
     std::optional<double> gamma;
     bool is_animated = false;  ///< there are further pictures
     bool is_srgb() const { return space == "sRGB"; }
-    /// Of a file that is read as data, whose numbers stay as they are stored: "its gAMA 1 is not applied:
-    /// ..."; "" of sRGB, and without chunks.
+    /// Says that a file which is read as data keeps its stored numbers: "its gAMA 1 is not applied: ...".
+    /// "" for sRGB, and for a file without colour chunks.
     std::string note_of_data() const;
 };
 
@@ -36,8 +36,8 @@ private:
     bool has_cicp_ = false, has_icc_ = false, has_srgb_ = false, is_animated_ = false;
 };
 
-/// Whether an ICC profile is that of sRGB: of a display, its three colorants and a curve that is sRGB's or its
-/// approximation, a power of 2.2.
+/// Whether an ICC profile is that of sRGB: of a display, its three colorants and a curve that is sRGB's or
+/// its approximation, a power of 2.2.
 bool is_srgb_profile(std::span<const unsigned char> profile);
 
 /// An encoded value of such a file, as sRGB encodes the same light.

@@ -16,7 +16,7 @@ struct PixelStretch {
     std::int64_t from = 1;
 
     bool is_none() const { return to == from; }
-    /// Of a length along x or y.
+    /// The factor from stored to square pixels for a length along x (0) or y (1).
     double scale(int along) const { return along == axis ? double(to) / double(from) : 1; }
     std::int64_t edge(std::int64_t px) const;
     /// `px` modulo `from`: where among the pixels that are stretched alike a window begins.

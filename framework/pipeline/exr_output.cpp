@@ -111,8 +111,8 @@ void name_color_space(ExrWriteOptions& write, const OutputOptions& options, cons
         write.attributes["colorInteropID"] = id;
 }
 
-/// Of pictures a user who chooses such a compression accepts the loss. Of data, and of channels that are kept
-/// bit for bit, a run may alter none: the id next to another is another object.
+/// A user who chooses a lossy compression accepts the loss in pictures. A run must not alter data, or
+/// channels that are kept bit for bit: the next id is another object.
 void refuse_lossy_data(const std::filesystem::path& path, const ExrContent& content,
                        const CaptureHeader& header, const OutputOptions& options) {
     for (const ExrOutputChannel& channel : content.channels) {

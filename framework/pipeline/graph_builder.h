@@ -44,9 +44,10 @@ std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFram
 
 struct StepBuild;
 
-/// Of glsl/host/square_pixels.frag.
+/// The binding of the block in glsl/host/square_pixels.frag.
 inline constexpr int kStretchBinding = 0;
-/// How the names of its passes and targets end; before it is the texture that it reads.
+/// The passes that convert between grids, and their targets, are named after the texture that they read, with
+/// one of these suffixes.
 inline constexpr const char* kToSquarePixels = "@square pixels";
 inline constexpr const char* kToStoredPixels = "@stored pixels";
 

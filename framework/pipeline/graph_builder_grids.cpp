@@ -63,7 +63,7 @@ graph::TextureHandle GraphBuilder::on_grid(graph::TextureHandle handle, const In
 
 namespace {
 
-/// Of the steps' outputs of that role, the last.
+/// The last output of that role among all steps.
 InputSource result_source(const Pipeline& pipeline, const std::string& role) {
     InputSource source;
     for (int i = 0; i < int(pipeline.steps.size()); ++i)

@@ -25,7 +25,7 @@ std::string extension(const fs::path& path) {
     return lower_case(path.extension().string());
 }
 
-/// Of the picture's pixels, those with a component above 1, which a PNG cuts.
+/// The share of pixels that have a component above 1, which a PNG cuts.
 double share_above_1(const Image& picture) {
     std::size_t count = 0;
     for (int y = 0; y < picture.height(); ++y)
