@@ -3,6 +3,8 @@
 #
 #   fresh_root FOLDER [SUITE]   makes FOLDER/root from a fresh copy of FOLDER/pristine-SUITE, which is kept; sets $root.
 #                               SUITE: bookworm unless given
+#                               HIDE, as in HIDE='libEGL*': names of libraries that no package may install there, as where
+#                               a distribution has none
 #   leave_root                  unmounts what fresh_root mounted; for the trap EXIT
 #   in_root COMMAND...          runs it there
 fresh_root() {
@@ -20,6 +22,7 @@ fresh_root() {
     for file in /etc/ssl/certs/ca-certificates.crt /etc/ssl/mirror.crt; do
         cp /etc/ssl/certs/ca-certificates.crt "$root$file"
     done
+    [ -z "${HIDE:-}" ] || echo "path-exclude=/usr/lib/*/$HIDE" >"$root/etc/dpkg/dpkg.cfg.d/hide"
     mount -t proc proc "$root/proc"
     mkdir -p "$root/dev/shm"
     mount -t tmpfs tmpfs "$root/dev/shm"
