@@ -1,19 +1,76 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 
+#include "cli/plugin_options.h"
 #include "cli/verbs.h"
 #include "framework/batch/approved_image.h"
 #include "framework/core/confinement.h"
+#include "framework/core/cores.h"
+#include "framework/core/error.h"
+#include "framework/core/thread_limit.h"
+#include "framework/effect/native/native_process.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {
 
 namespace {
+
+/// What a process of plug-ins is held to here, which only such a process can say.
+Confinement confinement_of_plugins() {
+    NativeProcessOptions options = native_process_options(PluginOptions{});
+    options.warns = false;
+    return NativeProcess(std::move(options)).held();
+}
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+std::string limit_text(double limit, const std::string& unit, const std::string& what) {
+    return std::isfinite(limit) ? fmt::format("{:.15g} {}{}", limit, unit, what) : "no limit of " + what;
+}
+
+void print_confinement(const Confinement& held) {
+    fmt::print("plug-ins      confined by {} and {}\n",
+               held.landlock_abi > 0 ? fmt::format("Landlock (ABI {})", held.landlock_abi) : "no Landlock",
+               held.seccomp ? "seccomp" : "no seccomp");
+    fmt::print(
+        "              rlimits: {}, {} open files, 0 bytes written to files\n",
+        limit_text(held.memory_bytes ? double(held.memory_bytes) : kNoLimit, "bytes of ", "address space"),
+        kMostPluginFiles);
+    if (held.counts_threads) fmt::print("              seccomp: {} threads\n", most_plugin_threads());
+    const GroupLimits group = group_limits();
+    fmt::print("              control group: {}, {}\n", limit_text(group.memory_bytes, "bytes of ", "memory"),
+               limit_text(group.threads, "", "threads"));
+    for (const std::string& gap : confinement_gaps(held))
+        fmt::print("              this kernel lets them {}\n", gap);
+}
+
+nlohmann::ordered_json number_or_null(double number) {
+    return std::isfinite(number) ? nlohmann::ordered_json(std::uint64_t(number)) : nullptr;
+}
+
+nlohmann::ordered_json confinement_json(const Confinement& held) {
+    const GroupLimits group = group_limits();
+    return {
+        {"landlock_abi", held.landlock_abi},
+        {"seccomp", held.seccomp},
+        {"rlimits",
+         {{"address_space_bytes", number_or_null(held.memory_bytes ? double(held.memory_bytes) : kNoLimit)},
+          {"open_files", kMostPluginFiles},
+          {"file_bytes", 0}}},
+        {"threads", number_or_null(held.counts_threads ? double(most_plugin_threads()) : kNoLimit)},
+        {"control_group",
+         {{"memory_bytes", number_or_null(group.memory_bytes)}, {"threads", number_or_null(group.threads)}}},
+        {"not_prevented", confinement_gaps(held)}};
+}
 
 void print_table(const std::vector<gpu::BackendReport>& reports) {
     fmt::print("{:<13} {:<7} {:<45} {}\n", "backend", "usable", "renderer", "version");
@@ -24,23 +81,22 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
         else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
     }
     fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
-    const Confinement offered = offered_confinement();
-    fmt::print(
-        "plug-ins      confined by {} and {}\n",
-        offered.landlock_abi > 0 ? fmt::format("Landlock (ABI {})", offered.landlock_abi) : "no Landlock",
-        offered.seccomp ? "seccomp" : "no seccomp");
-    for (const std::string& gap : confinement_gaps(offered))
-        fmt::print("              this kernel lets them {}\n", gap);
+    try {
+        print_confinement(confinement_of_plugins());
+    } catch (const Error& error) {
+        fmt::print("plug-ins      none can run: {}\n", error.what());
+    }
 }
 
 void print_json(const std::vector<gpu::BackendReport>& reports) {
     nlohmann::ordered_json document;
     document["aftershade"] = 1;
     document["cpu"] = {{"model", cpu_model()}, {"threads", std::thread::hardware_concurrency()}};
-    const Confinement offered = offered_confinement();
-    document["plugins"] = {{"landlock_abi", offered.landlock_abi},
-                           {"seccomp", offered.seccomp},
-                           {"not_prevented", confinement_gaps(offered)}};
+    try {
+        document["plugins"] = confinement_json(confinement_of_plugins());
+    } catch (const Error& error) {
+        document["plugins"] = {{"reason", error.what()}};
+    }
     document["backends"] = nlohmann::ordered_json::array();
     for (const gpu::BackendReport& report : reports) {
         nlohmann::ordered_json row{{"backend", gpu::backend_name(report.backend)}, {"usable", report.usable}};

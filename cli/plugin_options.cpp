@@ -12,7 +12,6 @@
 #include "cli/interrupt.h"
 #include "framework/batch/worker.h"
 #include "framework/core/memory_limit.h"
-#include "framework/effect/native/native_process.h"
 
 namespace aftershade::cli {
 
@@ -98,16 +97,18 @@ std::uint64_t foreign_memory_bytes() {
     return machine_memory_bytes() / 4 * 3;
 }
 
+NativeProcessOptions native_process_options(const PluginOptions& options) {
+    NativeProcessOptions settings;
+    settings.command = {"/proc/self/exe", kNativeHostWord};
+    settings.timeout = std::chrono::duration<double>(options.timeout_s);
+    settings.memory_bytes = options.memory_bytes;
+    return settings;
+}
+
 NativeRegistry native_registry(const PluginOptions& options, StatusWriter* status) {
     std::vector<std::filesystem::path> folders = search_path(options);
     std::shared_ptr<NativeProcess> process;
-    if (!folders.empty()) {
-        NativeProcessOptions settings;
-        settings.command = {"/proc/self/exe", kNativeHostWord};
-        settings.timeout = std::chrono::duration<double>(options.timeout_s);
-        settings.memory_bytes = options.memory_bytes;
-        process = std::make_shared<NativeProcess>(std::move(settings));
-    }
+    if (!folders.empty()) process = std::make_shared<NativeProcess>(native_process_options(options));
     return NativeRegistry(std::move(folders), shipped_native_libraries(), status, std::move(process));
 }
 

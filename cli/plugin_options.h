@@ -12,6 +12,7 @@
 #include "framework/core/error.h"
 #include "framework/core/status.h"
 #include "framework/effect/native/native_library.h"
+#include "framework/effect/native/native_process.h"
 
 namespace CLI {
 class App;
@@ -42,6 +43,9 @@ std::optional<ExitCode> run_in_worker(const PluginOptions& options, bool is_fore
 
 /// Memory that a worker with untrusted effects may use: three quarters of the machine's.
 std::uint64_t foreign_memory_bytes();
+
+/// Those of the process of plug-ins.
+NativeProcessOptions native_process_options(const PluginOptions& options);
 
 /// The linked libraries and those of the folders; the latter run in a process of their own, confined.
 /// `status` must outlive the registry.

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -72,8 +73,12 @@ struct ChildPlan {
     pid_t parent;
 };
 
+/// A lower limit that the child would inherit anyway stays: root could raise it, others would fail to.
 bool limit(__rlimit_resource_t resource, rlim_t soft, rlim_t hard) {
-    const rlimit values{soft, hard};
+    rlimit inherited{};
+    if (getrlimit(resource, &inherited) != 0) return false;
+    hard = std::min(hard, inherited.rlim_max);
+    const rlimit values{std::min(soft, hard), hard};
     return setrlimit(resource, &values) == 0;
 }
 

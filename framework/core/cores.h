@@ -1,4 +1,4 @@
-// How many processor cores this process may use.
+// How many processor cores this process may use, and what its control groups allow it.
 #pragma once
 
 #include <filesystem>
@@ -13,5 +13,15 @@ int allotted_cores();
 /// The processor share of a control group and of those above it, in cores; infinity without a limit. `groups`
 /// is the text of /proc/self/cgroup, `root` where control groups are mounted.
 double granted_cores(const std::string& groups, const std::filesystem::path& root);
+
+/// Limits of a control group and of those above it, without which a number is infinite. Arguments as those of
+/// granted_cores.
+struct GroupLimits {
+    double memory_bytes = 0;
+    double threads = 0;  ///< of all processes together
+};
+GroupLimits group_limits(const std::string& groups, const std::filesystem::path& root);
+/// Those of this process.
+GroupLimits group_limits();
 
 }  // namespace aftershade

@@ -343,7 +343,7 @@ TEST(Doctor, PrintsALineForEachBackend) {
     const CommandResult result = run_aftershade({"doctor"}, folder.path());
     EXPECT_EQ(result.exit_code, 0) << result.out;
     const auto lines = lines_of_text(result.out);
-    ASSERT_EQ(lines.size(), 6u) << result.out;
+    ASSERT_GE(lines.size(), 8u) << result.out;
     EXPECT_TRUE(lines[0].starts_with("backend       usable  renderer"));
     EXPECT_TRUE(lines[1].starts_with("egl  "));
     EXPECT_TRUE(lines[2].starts_with("egl-software  "));
@@ -351,6 +351,29 @@ TEST(Doctor, PrintsALineForEachBackend) {
     EXPECT_TRUE((lines[2] + lines[3]).find("yes     llvmpipe") != std::string::npos) << result.out;
     EXPECT_TRUE(lines[4].starts_with("cpu  "));
     EXPECT_TRUE(lines[5].starts_with("plug-ins  ")) << lines[5];
+    for (const char* const kind : {"Landlock", "seccomp", "rlimits: ", "control group: "})
+        EXPECT_NE(result.out.find(kind), std::string::npos) << kind;
+}
+
+TEST(Doctor, SaysWhatAProcessOfPluginsHolds) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> limited{"/bin/sh", "-c", "ulimit -v 3000000; exec \"$0\" doctor --json",
+                                           AFTERSHADE_EXECUTABLE};
+    for (const auto& [words, kilobytes] :
+         {std::pair{std::vector<std::string>{AFTERSHADE_EXECUTABLE, "doctor", "--json"}, 4194304u},
+          {limited, 3000000u}}) {
+        const CommandResult result = Command(words, folder.path()).wait();
+        const auto plugins = nlohmann::json::parse(result.out).at("plugins");
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+        EXPECT_EQ(plugins.at("rlimits").at("address_space_bytes"), kilobytes * 1024ull)
+            << "the limit of the shell where it is lower";
+#endif
+        EXPECT_EQ(plugins.at("rlimits").at("open_files"), 256);
+        EXPECT_EQ(plugins.at("rlimits").at("file_bytes"), 0);
+        EXPECT_TRUE(plugins.at("control_group").contains("memory_bytes"));
+        const bool says_threads = plugins.at("not_prevented").dump().find("threads") != std::string::npos;
+        EXPECT_EQ(plugins.at("threads").is_null(), says_threads) << "what is missing is said";
+    }
 }
 
 TEST(Doctor, PrintsJson) {

@@ -56,5 +56,22 @@ TEST(Cores, OfVersion1AreQuotaOverPeriod) {
     EXPECT_TRUE(std::isinf(granted_cores("4:cpu,cpuacct:/docker\n", folder.path())));
 }
 
+TEST(ControlGroups, LimitMemoryAndThreadsByTheLeastOfThemAndThoseAbove) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "farm/job");
+    test::write_text(folder / "farm/memory.max", "2000000000\n");
+    test::write_text(folder / "farm/job/memory.max", "max\n");
+    test::write_text(folder / "farm/job/pids.max", "300\n");
+    const GroupLimits limits = group_limits("0::/farm/job\n", folder.path());
+    EXPECT_EQ(limits.memory_bytes, 2e9);
+    EXPECT_EQ(limits.threads, 300);
+    EXPECT_TRUE(std::isinf(group_limits("0::/farm\n", folder.path()).threads));
+    std::filesystem::create_directories(folder / "memory/job");
+    test::write_text(folder / "memory/job/memory.limit_in_bytes", "1000000000\n");
+    test::write_text(folder / "memory/memory.limit_in_bytes", "9223372036854771712\n");
+    EXPECT_EQ(group_limits("4:memory:/job\n", folder.path()).memory_bytes, 1e9);
+    EXPECT_TRUE(std::isinf(group_limits("4:memory:/\n", folder.path()).memory_bytes));
+}
+
 }  // namespace
 }  // namespace aftershade

@@ -19,6 +19,7 @@
 #include "framework/core/child_process.h"
 #include "framework/core/error.h"
 #include "framework/core/text.h"
+#include "framework/core/thread_limit.h"
 #include "framework/core/units.h"
 #include "framework/effect/native/native_call.h"
 #include "framework/effect/native/native_wire.h"
@@ -119,7 +120,8 @@ struct NativeProcess::Impl {
     Descriptor stream, output;
     std::string received;
     Printed printed;
-    std::optional<Confinement> held;
+    Confinement held;
+    std::optional<ThreadLimit> threads;
     std::map<int, Instance> instances;
     int last_instance = 0;
     int starts = 0;
@@ -145,13 +147,24 @@ struct NativeProcess::Impl {
         received.clear();
         WorkStatus starting;
         starting.phase = "the start of its process";
-        const std::string hello = receive(starting, Clock::now() + deadline_after());
+        const auto deadline = Clock::now() + deadline_after();
+        limit_threads(starting, deadline);
+        const std::string hello = receive(starting, deadline);
         WireReader in(hello);
-        held = Confinement{int(in.number()), in.flag()};
-        if (const auto gaps = confinement_gaps(*held); !gaps.empty() && starts == 1)
+        held = Confinement{int(in.number()), in.flag(), in.flag(), std::uint64_t(in.number())};
+        if (const auto gaps = confinement_gaps(held); !gaps.empty() && options.warns && starts == 1)
             std::fprintf(stderr,
                          "aftershade: warning: this kernel does not keep plug-ins from being able to %s\n",
                          joined(gaps, " and to ", ", to ").c_str());
+    }
+
+    void limit_threads(const WorkStatus& place, Clock::time_point deadline) {
+        Descriptor notices;
+        while (!receive_thread_notices(stream.get(), notices)) {
+            if (errno != EAGAIN && errno != EINTR) ended(place);
+            wait(POLLIN, place, deadline);
+        }
+        if (notices.get() >= 0) threads.emplace(std::move(notices), process, most_plugin_threads());
     }
 
     /// Gives it time to leave in order; then it is killed. Its status as waitpid(2) has it.
@@ -166,6 +179,7 @@ struct NativeProcess::Impl {
             read_output();
         }
         if (ended.si_pid == 0) kill(process, SIGKILL);
+        threads.reset();
         const int status = reap(std::exchange(process, -1));
         read_output();
         printed.finish();
@@ -297,7 +311,8 @@ NativeProcess::~NativeProcess() {
     if (impl_->process > 0) impl_->finish(false);
 }
 
-std::optional<Confinement> NativeProcess::held() const {
+const Confinement& NativeProcess::held() {
+    if (impl_->process < 0) impl_->start();
     return impl_->held;
 }
 

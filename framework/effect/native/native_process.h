@@ -21,6 +21,7 @@ struct NativeProcessOptions {
     std::vector<std::string> command;
     std::chrono::duration<double> timeout{60};  ///< of one call of a plug-in, whatever it prints
     std::optional<std::uint64_t> memory_bytes;  ///< of address space
+    bool warns = true;                          ///< of what the kernel does not prevent, on standard error
 };
 
 /// Starts the process with the first call, and again with the first one after it has ended; instances end
@@ -50,8 +51,8 @@ public:
     void reset(int instance);
     void destroy(int instance);
 
-    /// What the kernel holds the process to; nullopt before the first call.
-    std::optional<Confinement> held() const;
+    /// What the kernel holds the process to; starts it where it is not there.
+    const Confinement& held();
 
 private:
     struct Impl;

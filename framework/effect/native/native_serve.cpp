@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <string>
@@ -124,11 +125,13 @@ int serve_native_code(int descriptor) {
     // An interrupt lets the run finish its frame, for which it needs this process; a terminal sends it to
     // all.
     for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_IGN);
-    const Confinement held = confine_native_code();
+    const Confinement held = confine_native_code(descriptor);
     const Stream stream(descriptor);
     WireWriter hello;
     hello.number(held.landlock_abi);
     hello.flag(held.seccomp);
+    hello.flag(held.counts_threads);
+    hello.number(std::int64_t(held.memory_bytes));
     if (!stream.send(hello.bytes())) return 0;
     Server server;
     for (std::string request; stream.receive(request);) {
