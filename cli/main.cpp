@@ -93,9 +93,11 @@ std::string unknown_command(const CLI::App& app, int argc, char** argv) {
 
 /// A folder for all that GL compiles: Mesa keeps LLVM's code in one of its own, unless that has been chosen
 /// too.
-void use_one_cache_folder() {
+void use_one_cache_folder(const CLI::App& verb) {
     const char* folder = std::getenv("AFTERSHADE_CACHE");
-    if (!folder || !*folder || std::string_view(folder) == "off") return;
+    const CLI::Option* read_only = verb.get_option_no_throw("--read-only");
+    if ((read_only && read_only->count() > 0) || !folder || !*folder || std::string_view(folder) == "off")
+        return;
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     constexpr int kKeepAnExistingOne = 0;
@@ -143,7 +145,6 @@ int main(int argc, char** argv) {
     hold_standard_streams();
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
-    use_one_cache_folder();
     CLI::App app{"Run chains of GLSL effects over G-buffer captures, without a display.", "aftershade"};
     app.formatter(std::make_shared<aftershade::cli::HelpFormatter>());
     app.set_version_flag("--version", std::string("aftershade " AFTERSHADE_VERSION));
@@ -167,6 +168,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
         refuse_empty_values(*app.get_subcommands().front());
+        use_one_cache_folder(*app.get_subcommands().front());
     } catch (const CLI::Success& asked_for_help) {
         const int code = app.exit(asked_for_help);
         return stdout_is_whole() ? code : fail(ExitCode::output, stdout_fault(errno).c_str());

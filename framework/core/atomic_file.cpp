@@ -133,7 +133,9 @@ Target target_of(const fs::path& named) {
     }
     return {named, false};  // a ring, which nothing can open
 }
+
 constexpr const char* kNotRegular = "is not a regular file";
+constexpr const char* kAbsent = "no such file";
 
 }  // namespace
 
@@ -301,34 +303,13 @@ void write_text_file(const fs::path& path, std::string_view text) {
     file.commit();
 }
 
-std::string read_text_file(const fs::path& path, std::error_code& failure) {
-    failure.clear();
-    errno = 0;
-    std::ifstream in(path, std::ios::binary);
-    std::string text;
-    std::array<char, 65536> buffer;
-    while (in && in.read(buffer.data(), buffer.size()).gcount() > 0)
-        text.append(buffer.data(), std::size_t(in.gcount()));
-    // A folder can be opened, but not read.
-    if (in.is_open() && !in.bad()) return text;
-    failure.assign(errno != 0 ? errno : EIO, std::generic_category());
-    return "";
-}
-
-std::string read_text_file(const fs::path& path, ExitCode code) {
-    std::error_code failure;
-    std::string text = read_text_file(path, failure);
-    if (failure) throw Error(code, path.string() + ": cannot be read: " + failure.message());
-    return text;
-}
-
 std::string read_regular_file(const fs::path& path, std::uintmax_t max_bytes, std::string& fault) {
     fault.clear();
     // Without O_NONBLOCK a pipe would wait for a writer. What is opened is what is judged.
     const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     struct stat status;
     if (file.get() < 0 || fstat(file.get(), &status) != 0) {
-        fault = errno == ENOENT ? "no such file" : std::string("cannot be read: ") + std::strerror(errno);
+        fault = errno == ENOENT ? kAbsent : std::string("cannot be read: ") + std::strerror(errno);
         // A socket, or a device that has no driver.
         if (errno == ENXIO || errno == ENODEV) fault = kNotRegular;
         return "";
@@ -355,12 +336,41 @@ std::string read_regular_file(const fs::path& path, std::uintmax_t max_bytes, st
     return "";
 }
 
+std::string read_text_file(const fs::path& path, ExitCode code, std::uintmax_t max_bytes) {
+    std::string fault;
+    std::string text = read_regular_file(path, max_bytes, fault);
+    if (!fault.empty()) throw Error(code, path.string() + ": " + fault);
+    return text;
+}
+
+bool replace_text_file(const fs::path& path, std::string_view before, std::string_view text) {
+    // A file's own lock would go with the file that is replaced. Any reader of the folder can hold this one.
+    const fs::path folder = target_of(path).path.parent_path();
+    const Descriptor lock(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    constexpr int kMostTries = 50;
+    constexpr useconds_t kPause_us = 10'000;
+    for (int i = 0; flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++i) {
+        if (i == kMostTries)
+            throw Error(ExitCode::output,
+                        path.string() + ": another program has held the lock of its folder '" +
+                            folder.string() + "' for half a second; nothing was written (try again)");
+        usleep(kPause_us);
+    }
+    std::string fault;
+    const std::string found = read_regular_file(path, kMaxTextFileBytes, fault);
+    if (fault.empty() && found != before) return false;
+    if (!fault.empty() && fault != kAbsent)
+        throw Error(ExitCode::output, path.string() + ": " + fault + "; nothing was written");
+    write_text_file(path, text);
+    return true;
+}
+
 bool file_begins_with(const fs::path& path, std::string_view bytes) {
-    std::error_code failure;
-    if (!fs::is_regular_file(path, failure)) return false;
+    const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+    struct stat status;
     std::string begin(bytes.size(), '\0');
-    std::ifstream file(path, std::ios::binary);
-    return file.read(begin.data(), std::streamsize(begin.size())) && begin == bytes;
+    return file.get() >= 0 && fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode) &&
+           pread(file.get(), begin.data(), begin.size(), 0) == ssize_t(bytes.size()) && begin == bytes;
 }
 
 }  // namespace aftershade

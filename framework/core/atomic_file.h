@@ -77,17 +77,21 @@ void prepare_output_folder(const std::filesystem::path& file);
 /// Throws Error(ExitCode::output) naming the path, also for a pipe without a reader.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
-/// The file's bytes as they are, also where the system does not report their number (/proc). "" where it
-/// cannot be read; `failure` says why, and is cleared otherwise.
-std::string read_text_file(const std::filesystem::path& path, std::error_code& failure);
-/// The same. Throws Error(code) naming the path and the system's reason.
-std::string read_text_file(const std::filesystem::path& path, ExitCode code);
 /// The bytes of a regular file of at most `max_bytes`. Where it is none, is larger or cannot be read: "", and
 /// `fault` says why, as a message ends: "no such file", "the file has 9 bytes, the limit is 5". `fault` is
 /// cleared otherwise. Pipes and devices are refused, not waited for, and a file that grows while it is read
 /// ends at the limit.
 std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t max_bytes,
                               std::string& fault);
+/// More than any text that this project reads.
+inline constexpr std::uintmax_t kMaxTextFileBytes = 16u << 20;
+/// The same. Throws Error(code) naming the path and the fault.
+std::string read_text_file(const std::filesystem::path& path, ExitCode code,
+                           std::uintmax_t max_bytes = kMaxTextFileBytes);
+/// Replaces the file by `text` if it holds `before`, or is absent; else false. Of several processes that do
+/// this at once, none replaces what another one has just written. Throws Error(ExitCode::output) naming the
+/// path.
+bool replace_text_file(const std::filesystem::path& path, std::string_view before, std::string_view text);
 /// Whether a regular file begins with these bytes; false where it cannot be read.
 bool file_begins_with(const std::filesystem::path& path, std::string_view bytes);
 

@@ -18,7 +18,8 @@ namespace {
 
 /// The name too, but not where it lies: another checkout gives the same hash.
 void add_file(const fs::path& file, std::string& text) {
-    text += "\n" + file.filename().string() + "\n" + read_text_file(file, ExitCode::usage);
+    constexpr std::uintmax_t kMaxBytes = 1u << 30;  // of a table of colours, the largest of them
+    text += "\n" + file.filename().string() + "\n" + read_text_file(file, ExitCode::usage, kMaxBytes);
 }
 
 /// The code of a native effect, without its tests.

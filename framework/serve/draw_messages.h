@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "framework/serve/http_message.h"
 
@@ -13,7 +14,8 @@ namespace aftershade::serve {
 struct DrawRequest {
     enum class Kind { picture, probe, histogram, metrics };
     Kind kind = Kind::picture;
-    std::string text;  ///< of the look
+    std::string text;                ///< of the look
+    std::vector<std::string> files;  ///< that it may name, with links followed
     std::uint64_t revision = 0;
     std::uint64_t effects_revision = 0;
     int frame = 0;

@@ -1,5 +1,6 @@
 #include "framework/serve/drawer.h"
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
+#include "framework/core/path_bounds.h"
 #include "framework/serve/draw_messages.h"
 #include "framework/serve/drawing_process.h"
 #include "framework/serve/look_model.h"
@@ -29,7 +31,8 @@ class Looks {
 public:
     explicit Looks(const ServeOptions& options) : options_(options) {}
 
-    /// Throws Refusal where the effects on disk are no longer those that the look was bound to elsewhere.
+    /// Throws Refusal where the files on disk are no longer those that the look was bound to elsewhere, such
+    /// as a look that it uses and that now names other files.
     std::shared_ptr<const BoundText> of(const DrawRequest& request) {
         if (bound_ && bound_->revision == request.revision &&
             bound_->effects_revision == request.effects_revision)
@@ -39,7 +42,16 @@ public:
             effects_revision_ = request.effects_revision;
         }
         Diagnostics faults;
+        std::string refused;
+        const FileRule rule([&](const std::filesystem::path& file) -> std::string {
+            if (std::ranges::find(request.files, resolved_path(file).string()) != request.files.end())
+                return "";
+            refused = "'" + file.string() +
+                      "' is not a file that the look named when it was read (change the look)";
+            return "is not a file that the look named";
+        });
         auto bound = bind_text(request.text, std::filesystem::absolute(options_.look), effects_, faults);
+        if (!refused.empty()) throw Refusal{403, refused};
         if (!bound || faults.has_errors())
             throw Refusal{409, "the effects on disk are no longer those that the look was bound to"};
         bound->revision = request.revision;

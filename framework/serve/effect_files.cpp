@@ -15,14 +15,10 @@ namespace aftershade::serve {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 bool is_shader_name(const fs::path& name) {
     static const std::vector<std::string> kEndings = {".vert", ".frag", ".comp", ".glsl"};
     return std::ranges::find(kEndings, name.extension().string()) != kEndings.end();
 }
-
-}  // namespace
 
 std::vector<std::string> EffectFiles::names() const {
     std::vector<std::string> names;
@@ -46,9 +42,8 @@ std::string EffectFiles::read(const std::string& name) const {
 
 void EffectFiles::write(const std::string& name, const std::string& before, const std::string& text) const {
     if (!why_not.empty()) throw Refusal{403, why_not};
-    if (read(name) != before)
+    if (read(name) != before || !replace_text_file(path_below(folder, name), before, text))
         throw Refusal{409, (folder / name).string() + " was changed by another program; nothing was written"};
-    write_text_file(path_below(folder, name), text);
 }
 
 EffectFiles effect_files(const EffectRegistry& effects, const std::string& id, bool read_only) {

@@ -9,6 +9,9 @@
 
 namespace aftershade::serve {
 
+/// Whether a page may write a file of this name in an effect's folder.
+bool is_shader_name(const std::filesystem::path& name);
+
 /// An effect's folder; nothing outside it can be reached through this.
 struct EffectFiles {
     std::filesystem::path folder;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -133,13 +134,13 @@ Response error_response(int status, const std::string& message) {
     return {status, "application/json", json.dump(-1, ' ', false, kReplace)};
 }
 
-std::string response_bytes(const Response& response) {
+std::string response_bytes(const Response& response, bool is_kept) {
     std::string bytes = "HTTP/1.1 " + std::to_string(response.status) + " " + reason(response.status);
     if (response.status != 204)  // which has neither (RFC 9110, 8.6)
         bytes += "\r\nContent-Type: " + response.type +
                  "\r\nContent-Length: " + std::to_string(response.body.size());
+    bytes += is_kept ? "\r\nConnection: keep-alive" : "\r\nConnection: close";
     bytes +=
-        "\r\nConnection: close"
         "\r\nCache-Control: no-store"
         "\r\nX-Content-Type-Options: nosniff"
         "\r\nX-Frame-Options: DENY"
@@ -153,27 +154,10 @@ std::string response_bytes(const Response& response) {
     return bytes + "\r\n\r\n" + response.body;
 }
 
-Framing framing_of(std::string_view bytes) {
-    const std::size_t end = bytes.find("\r\n\r\n");
-    if (end == std::string_view::npos || end > kMaxHeadBytes) {
-        if (bytes.size() <= kMaxHeadBytes) return {};
-        return {false, error_response(431, "the request's head is longer than 16 KiB")};
-    }
-    const std::size_t line = bytes.find("\r\n");
-    const auto headers = read_headers(line == end ? "" : bytes.substr(line + 2, end - line - 2));
-    if (!headers) return {false, error_response(400, "the request's headers are not HTTP/1.1")};
-    if (headers->contains("transfer-encoding"))
-        return {false, error_response(411, "a body needs its Content-Length")};
-    const auto length = length_of(*headers);
-    if (!length) return {false, error_response(400, "Content-Length is not a number")};
-    if (*length > kMaxBodyBytes) return {false, error_response(413, "the body is longer than 1 MiB")};
-    return {bytes.size() >= end + 4 + *length};
-}
-
-std::optional<Request> parse_request(std::string_view bytes) {
-    const std::size_t end = bytes.find("\r\n\r\n"), line_end = bytes.find("\r\n");
+std::optional<Request> parse_request(std::string_view head) {
+    const std::size_t end = head.find("\r\n\r\n"), line_end = head.find("\r\n");
     if (end == std::string_view::npos) return std::nullopt;
-    const std::string_view line = bytes.substr(0, line_end);
+    const std::string_view line = head.substr(0, line_end);
     const std::size_t first = line.find(' '), second = line.rfind(' ');
     if (first == std::string_view::npos || second <= first || line.substr(second + 1) != "HTTP/1.1")
         return std::nullopt;
@@ -185,11 +169,53 @@ std::optional<Request> parse_request(std::string_view bytes) {
     request.path = target.substr(0, question);
     if (question < target.size() && !read_query(target.substr(question + 1), request.query))
         return std::nullopt;
-    auto headers = read_headers(line_end == end ? "" : bytes.substr(line_end + 2, end - line_end - 2));
+    auto headers = read_headers(line_end == end ? "" : head.substr(line_end + 2, end - line_end - 2));
     if (!headers) return std::nullopt;
     request.headers = std::move(*headers);
-    request.body = bytes.substr(end + 4, length_of(request.headers).value_or(0));
     return request;
+}
+
+std::optional<Response> Incoming::add(std::string_view bytes) {
+    bytes_ += bytes;
+    if (request_) return std::nullopt;
+    constexpr std::string_view kEnd = "\r\n\r\n";
+    const std::size_t end =
+        std::string_view(bytes_).substr(0, kMaxHeadBytes + kEnd.size()).find(kEnd, searched_);
+    if (end == std::string_view::npos) {
+        searched_ = bytes_.size() - std::min(bytes_.size(), kEnd.size() - 1);
+        if (bytes_.size() < kMaxHeadBytes + kEnd.size()) return std::nullopt;
+        return error_response(431, "the request's head is longer than 16 KiB");
+    }
+    head_ = end + kEnd.size();
+    const std::string_view head = std::string_view(bytes_).substr(0, head_);
+    std::size_t lines = 0;
+    for (std::size_t at = head.find('\n'); at != std::string_view::npos; at = head.find('\n', at + 1))
+        ++lines;
+    if (lines > kMaxHeadLines)
+        return error_response(431,
+                              "the request's head has more than " + std::to_string(kMaxHeadLines) + " lines");
+    auto request = parse_request(head);
+    if (!request) return error_response(400, "the request is not HTTP/1.1");
+    if (request->headers.contains("transfer-encoding"))
+        return error_response(411, "a body needs its Content-Length");
+    const auto length = length_of(request->headers);
+    if (!length) return error_response(400, "Content-Length is not a number");
+    if (*length > kMaxBodyBytes) return error_response(413, "the body is longer than 1 MiB");
+    whole_ = head_ + *length;
+    bytes_.reserve(whole_);  // or it would grow to twice that
+    request_ = std::move(request);
+    return std::nullopt;
+}
+
+bool Incoming::is_kept() const {
+    return lower_case(request_->header("connection")) == "keep-alive" && bytes_.size() == whole_;
+}
+
+Request Incoming::take() {
+    bytes_.resize(whole_);
+    bytes_.erase(0, head_);
+    request_->body = std::exchange(bytes_, {});
+    return std::move(*request_);
 }
 
 }  // namespace aftershade::serve

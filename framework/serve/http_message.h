@@ -1,5 +1,4 @@
-// Requests and answers of HTTP/1.1, as far as one page needs them: a whole request in, a whole answer out,
-// and the connection closes.
+// Requests and answers of HTTP/1.1, as far as one page needs them: a whole request in, a whole answer out.
 #pragma once
 
 #include <cstddef>
@@ -13,6 +12,7 @@
 namespace aftershade::serve {
 
 inline constexpr std::size_t kMaxHeadBytes = 16 * 1024;
+inline constexpr std::size_t kMaxHeadLines = 64;  ///< a browser sends 20
 inline constexpr std::size_t kMaxBodyBytes = 1024 * 1024;
 
 struct Request {
@@ -39,16 +39,32 @@ Response json_response(const nlohmann::ordered_json& json);
 Response error_response(int status, const std::string& message);
 
 /// With the headers that every answer has: no sniffing, no store, no framing, no scripts but the page's own.
-std::string response_bytes(const Response& response);
+std::string response_bytes(const Response& response, bool is_kept = false);
 
-/// What the first bytes of a connection are.
-struct Framing {
-    bool is_whole = false;
-    std::optional<Response> refusal{};  ///< no more needs to be read
+/// nullopt where it is not HTTP/1.1, or where a header stands twice. `head` ends with its empty line; what is
+/// behind that counts for nothing.
+std::optional<Request> parse_request(std::string_view head);
+
+/// A request that comes in pieces. Each byte is searched for the head's end once, and the head is read once.
+class Incoming {
+public:
+    /// What no more needs to be read of, once there is such a thing.
+    std::optional<Response> add(std::string_view bytes);
+    bool has_begun() const { return !bytes_.empty(); }
+    /// With everything but the body, once the head is there; else nullptr.
+    const Request* head() const { return request_ ? &*request_ : nullptr; }
+    bool is_whole() const { return request_ && bytes_.size() >= whole_; }
+    /// Whether another request may follow on the connection, as browsers ask; not one that came too early.
+    bool is_kept() const;
+    std::size_t held_bytes() const { return bytes_.empty() ? 0 : bytes_.capacity(); }
+    Request take();
+
+private:
+    std::string bytes_;
+    std::size_t searched_ = 0;  // of bytes_, for the head's end
+    std::optional<Request> request_;
+    std::size_t whole_ = 0;  // bytes of head and body
+    std::size_t head_ = 0;   // bytes of the head
 };
-Framing framing_of(std::string_view bytes);
-
-/// nullopt where it is not HTTP/1.1, or where a header stands twice. `bytes` are whole.
-std::optional<Request> parse_request(std::string_view bytes);
 
 }  // namespace aftershade::serve

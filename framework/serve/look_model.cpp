@@ -56,9 +56,7 @@ LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool 
       read_only_(read_only),
       folders_(std::move(folders)),
       effects_(find_effects_()) {
-    std::string text = read_text_file(path_, ExitCode::usage);
-    if (text.size() > kMaxDocumentBytes)
-        throw Error(ExitCode::usage, path_.string() + ": is longer than 1 MiB, the most that a look may be");
+    std::string text = read_text_file(path_, ExitCode::usage, kMaxDocumentBytes);
     saved_text_ = text;
     texts_.push_back(std::move(text));
     adopt(binding_of(texts_[at_], Origin::disk));
@@ -70,7 +68,11 @@ LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool 
 }
 
 std::string LookModel::why_not(const std::filesystem::path& file) const {
-    if (named_on_disk_.contains(resolved_path(file))) return "";
+    const std::filesystem::path resolved = resolved_path(file);
+    if (is_shader_name(resolved))
+        return "is a shader, which pages can write, so that a look cannot read anything else from it (give "
+               "the file another ending)";
+    if (named_on_disk_.contains(resolved)) return "";
     for (const auto& folder : folders_)
         if (out_of_bounds(file, folder).empty()) return "";
     return out_of_bounds(file, path_.parent_path());
@@ -79,13 +81,16 @@ std::string LookModel::why_not(const std::filesystem::path& file) const {
 /// A text on disk is of who has the disk, and not of a page: its files may be named from then on.
 LookModel::Binding LookModel::binding_of(const std::string& text, Origin origin) {
     Binding binding;
+    std::vector<std::string> files;
     const FileRule rule([&](const std::filesystem::path& file) {
         if (origin == Origin::disk) named_on_disk_.insert(resolved_path(file));
         std::string reason = why_not(file);
-        if (!reason.empty() && binding.refused.empty()) binding.refused = "'" + file.string() + "' " + reason;
+        if (reason.empty()) files.push_back(resolved_path(file).string());
+        else if (binding.refused.empty()) binding.refused = "'" + file.string() + "' " + reason;
         return reason;
     });
     binding.bound = bind_text(text, path_, effects_, binding.faults);
+    if (binding.bound) binding.bound->files = std::move(files);
     return binding;
 }
 
@@ -183,11 +188,8 @@ void LookModel::redo() {
 void LookModel::save() {
     const std::lock_guard lock(mutex_);
     if (read_only_) throw Refusal{403, "the look is not written: the program runs with --read-only"};
-    std::error_code failure;
-    const std::string on_disk = read_text_file(path_, failure);
-    if (!failure && on_disk != saved_text_)
+    if (!replace_text_file(path_, saved_text_, texts_[at_]))
         throw Refusal{409, path_.string() + " was changed by another program; nothing was written"};
-    write_text_file(path_, texts_[at_]);
     saved_text_ = texts_[at_];
     saved_revision_ = revision_;
 }
@@ -195,9 +197,9 @@ void LookModel::save() {
 void LookModel::follow_file() {
     const std::lock_guard lock(mutex_);
     if (texts_[at_] != saved_text_) return;
-    std::error_code failure;
-    std::string on_disk = read_text_file(path_, failure);
-    if (failure || on_disk == saved_text_ || on_disk.size() > kMaxDocumentBytes) return;
+    std::string fault;
+    std::string on_disk = read_regular_file(path_, kMaxDocumentBytes, fault);
+    if (!fault.empty() || on_disk == saved_text_) return;
     saved_text_ = on_disk;
     Binding binding = binding_of(on_disk, Origin::disk);
     change(std::move(on_disk), std::move(binding));

@@ -28,6 +28,7 @@ struct BoundText {
     std::shared_ptr<EffectRegistry> effects;  ///< owns the manifests of `pipeline`
     Look look;
     Pipeline pipeline;
+    std::vector<std::string> files{};  ///< that it names, with links followed
     std::uint64_t revision = 0;
     std::uint64_t effects_revision = 0;
 };

@@ -101,6 +101,7 @@ DrawRequest PageServer::request_of(const Request& request, DrawRequest::Kind kin
     const std::shared_ptr<const BoundText> look = setup_.look.bound();
     if (!look) throw Refusal{409, "the look has faults, and there was none without before it"};
     wanted.text = look->text;
+    wanted.files = look->files;
     wanted.revision = look->revision;
     wanted.effects_revision = look->effects_revision;
     wanted.frame = number_of(request, "frame", setup_.sequence.frames.front());
@@ -116,32 +117,32 @@ DrawRequest PageServer::request_of(const Request& request, DrawRequest::Kind kin
     return wanted;
 }
 
-Response PageServer::picture(const Request& request) {
-    if (!setup_.look.bound() && request.parameter("view", "final") == "final")
-        if (auto last = setup_.pictures.last_final()) return *last;
-    const DrawRequest wanted = request_of(request, DrawRequest::Kind::picture);
-    if (request.parameter("format", "png") != "png") throw Refusal{400, "'format' is png"};
-    return setup_.pictures.run(wanted);
+/// Where nothing can be drawn.
+std::optional<Response> PageServer::last_picture(const Request& request) const {
+    if (setup_.look.bound() || request.parameter("view", "final") != "final") return std::nullopt;
+    return setup_.pictures.last_final();
 }
 
-Response PageServer::probe(const Request& request) {
+DrawRequest PageServer::picture(const Request& request) const {
+    DrawRequest wanted = request_of(request, DrawRequest::Kind::picture);
+    if (request.parameter("format", "png") != "png") throw Refusal{400, "'format' is png"};
+    return wanted;
+}
+
+DrawRequest PageServer::probe(const Request& request) const {
     DrawRequest wanted = request_of(request, DrawRequest::Kind::probe);
     wanted.x = number_of(request, "x", -1);
     wanted.y = number_of(request, "y", -1);
     if (wanted.x < 0 || wanted.y < 0 || wanted.x >= setup_.header.display_window.width() ||
         wanted.y >= setup_.header.display_window.height())
         throw Refusal{400, "'x' and 'y' are a pixel of the picture"};
-    return setup_.pictures.run(wanted);
+    return wanted;
 }
 
-Response PageServer::histogram(const Request& request) {
-    return setup_.pictures.run(request_of(request, DrawRequest::Kind::histogram));
-}
-
-Response PageServer::metrics(const Request& request) {
+DrawRequest PageServer::metrics(const Request& request) const {
     DrawRequest wanted = request_of(request, DrawRequest::Kind::metrics);
     wanted.truth = request.parameter("truth");
-    return setup_.pictures.run(wanted);
+    return wanted;
 }
 
 Response PageServer::command() const {
@@ -212,41 +213,46 @@ Response PageServer::new_effect(const Request& request) {
     return state();
 }
 
-Response PageServer::answer(const Request& request) {
-    using Answer = std::function<Response()>;
+void PageServer::answer(const Request& request, const Reply& reply) {
+    using Answer = std::function<void()>;
+    const auto now = [&](auto make) { return [&, make] { reply(make()); }; };
+    const auto drawn = [&](auto make) { return [&, make] { setup_.pictures.run(make(), reply); }; };
     const std::map<std::string, std::pair<std::string, Answer>> answers = {
-        {"/api/state", {"GET", [&] { return state(); }}},
-        {"/api/effects",
+        {"/api/state", {"GET", now([&] { return state(); })}},
+        {"/api/effects", {"GET", now([&] {
+                              return Response{200, "application/json", setup_.look.effects_json()};
+                          })}},
+        {"/api/picture",
          {"GET",
           [&] {
-              return Response{200, "application/json", setup_.look.effects_json()};
+              if (auto last = last_picture(request)) reply(std::move(*last));
+              else setup_.pictures.run(picture(request), reply);
           }}},
-        {"/api/picture", {"GET", [&] { return picture(request); }}},
-        {"/api/probe", {"GET", [&] { return probe(request); }}},
-        {"/api/histogram", {"GET", [&] { return histogram(request); }}},
-        {"/api/metrics", {"GET", [&] { return metrics(request); }}},
-        {"/api/command", {"GET", [&] { return command(); }}},
-        {"/api/changes", {"GET", [&] { return changes(); }}},
-        {"/api/shaders", {"GET", [&] { return shaders(request); }}},
-        {"/api/shader", {"POST", [&] { return save_shader(request); }}},
-        {"/api/effect", {"POST", [&] { return new_effect(request); }}},
-        {"/api/edit", {"POST", [&] { return change(request); }}},
-        {"/api/undo", {"POST", [&] { return change(request); }}},
-        {"/api/redo", {"POST", [&] { return change(request); }}},
-        {"/api/save", {"POST", [&] { return change(request); }}}};
+        {"/api/probe", {"GET", drawn([&] { return probe(request); })}},
+        {"/api/histogram", {"GET", drawn([&] { return request_of(request, DrawRequest::Kind::histogram); })}},
+        {"/api/metrics", {"GET", drawn([&] { return metrics(request); })}},
+        {"/api/command", {"GET", now([&] { return command(); })}},
+        {"/api/changes", {"GET", now([&] { return changes(); })}},
+        {"/api/shaders", {"GET", now([&] { return shaders(request); })}},
+        {"/api/shader", {"POST", now([&] { return save_shader(request); })}},
+        {"/api/effect", {"POST", now([&] { return new_effect(request); })}},
+        {"/api/edit", {"POST", now([&] { return change(request); })}},
+        {"/api/undo", {"POST", now([&] { return change(request); })}},
+        {"/api/redo", {"POST", now([&] { return change(request); })}},
+        {"/api/save", {"POST", now([&] { return change(request); })}}};
     const auto found = answers.find(request.path);
-    if (found == answers.end()) return error_response(404, "there is nothing at this address");
+    if (found == answers.end()) return reply(error_response(404, "there is nothing at this address"));
     if (request.method != found->second.first)
-        return error_response(405, "this address takes " + found->second.first);
+        return reply(error_response(405, "this address takes " + found->second.first));
     try {
         // One body at a time: JSON takes up to 50 times the memory of its text.
         const std::unique_lock lock =
             request.body.empty() ? std::unique_lock<std::mutex>() : std::unique_lock(bodies_);
-        return found->second.second();
+        found->second.second();
     } catch (const Refusal& refusal) {
-        return error_response(refusal.status, refusal.message);
+        reply(error_response(refusal.status, refusal.message));
     } catch (const Error& error) {
-        return error_response(500, error.what());
+        reply(error_response(500, error.what()));
     }
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,16 +36,18 @@ public:
     explicit PageServer(PageSetup setup)
         : setup_(std::move(setup)), stamp_(stamp_of_folders(setup_.effect_folders)) {}
 
-    /// Of a request that the guards let through, to an address below /api/.
-    Response answer(const Request& request);
+    using Reply = PictureQueue::Reply;
+    /// Of a request that the guards let through, to an address below /api/. What is drawn is replied to
+    /// later.
+    void answer(const Request& request, const Reply& reply);
 
 private:
     Response state() const;
     Response change(const Request& request);
-    Response picture(const Request& request);
-    Response probe(const Request& request);
-    Response histogram(const Request& request);
-    Response metrics(const Request& request);
+    std::optional<Response> last_picture(const Request& request) const;
+    DrawRequest picture(const Request& request) const;
+    DrawRequest probe(const Request& request) const;
+    DrawRequest metrics(const Request& request) const;
     Response command() const;
     Response changes();
     Response shaders(const Request& request) const;

@@ -36,7 +36,7 @@ PictureQueue::~PictureQueue() {
     {
         const std::lock_guard lock(mutex_);
         ends_ = true;
-        for (const auto& task : tasks_) task->answer.set_value(superseded());
+        for (const auto& task : tasks_) task->reply(superseded());
         tasks_.clear();
         waiting_.notify_all();
     }
@@ -44,7 +44,7 @@ PictureQueue::~PictureQueue() {
 }
 
 void PictureQueue::loop() {
-    while (const std::unique_ptr<Task> task = next()) task->answer.set_value(answer(task->request));
+    while (const std::unique_ptr<Task> task = next()) task->reply(answer(task->request));
 }
 
 std::unique_ptr<PictureQueue::Task> PictureQueue::next() {
@@ -53,7 +53,7 @@ std::unique_ptr<PictureQueue::Task> PictureQueue::next() {
         waiting_.wait(lock, [&] { return ends_ || !tasks_.empty(); });
         if (ends_) return nullptr;
         if (!stop_) break;
-        for (const auto& task : tasks_) task->answer.set_value(superseded());
+        for (const auto& task : tasks_) task->reply(superseded());
         tasks_.clear();
     }
     std::unique_ptr<Task> task = std::move(tasks_.front());
@@ -102,22 +102,20 @@ Response PictureQueue::answer(const DrawRequest& request) {
 void PictureQueue::drop_older(const DrawRequest& request) {
     tasks_.remove_if([&](const std::unique_ptr<Task>& task) {
         const bool is_older = replaces(request, task->request);
-        if (is_older) task->answer.set_value(superseded());
+        if (is_older) task->reply(superseded());
         return is_older;
     });
 }
 
-Response PictureQueue::run(DrawRequest request) {
-    auto task = std::make_unique<Task>(Task{std::move(request), {}});
-    std::future<Response> answer = task->answer.get_future();
-    {
-        const std::lock_guard lock(mutex_);
-        if (ends_) return superseded();
-        drop_older(task->request);
-        tasks_.push_back(std::move(task));
-        waiting_.notify_one();
-    }
-    return answer.get();
+void PictureQueue::run(DrawRequest request, Reply reply) {
+    constexpr std::size_t kMost = 64;  // each with a look's text of up to 1 MiB
+    const std::lock_guard lock(mutex_);
+    if (ends_) return reply(superseded());
+    drop_older(request);
+    if (tasks_.size() >= kMost)
+        return reply(error_response(503, "64 pictures wait, the most that may; send it again"));
+    tasks_.push_back(std::make_unique<Task>(Task{std::move(request), std::move(reply)}));
+    waiting_.notify_one();
 }
 
 }  // namespace aftershade::serve

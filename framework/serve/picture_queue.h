@@ -5,7 +5,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
-#include <future>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -35,16 +34,18 @@ public:
     PictureQueue(const PictureQueue&) = delete;
     PictureQueue& operator=(const PictureQueue&) = delete;
 
-    /// Waits for the answer. A picture of the same view that has not begun is answered with 204 where it is
-    /// of the same scale or of an older revision; so is every request after the end.
-    Response run(DrawRequest request);
+    using Reply = std::function<void(Response)>;
+    /// Does not wait: `reply` gets the answer, on any thread. A picture of the same view that has not begun
+    /// is answered with 204 where it is of the same scale or of an older revision; so is every request after
+    /// the end. Where as many wait as may, 503.
+    void run(DrawRequest request, Reply reply);
     /// The final picture of the whole size that came last, for where the look cannot be drawn any more.
     std::optional<Response> last_final() const;
 
 private:
     struct Task {
         DrawRequest request;
-        std::promise<Response> answer;
+        Reply reply;
     };
     struct GivenUp {
         std::string text;

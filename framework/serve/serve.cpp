@@ -1,6 +1,7 @@
 #include "framework/serve/serve.h"
 
 #include <memory>
+#include <optional>
 
 #include "framework/capture/capture.h"
 #include "framework/serve/connections.h"
@@ -58,16 +59,21 @@ void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
     const std::string token = random_token();
     if (options.ready)
         options.ready("http://127.0.0.1:" + std::to_string(connections.port()) + "/#token=" + token);
-    connections.run(
-        [&](const Request& request) {
-            if (auto refused = refusal(request, connections.port(), token)) return *refused;
-            if (request.path.starts_with("/api/")) return server.answer(request);
-            const auto file = files.find(request.path);
-            if (file == files.end()) return error_response(404, "there is nothing at this address");
-            if (request.method != "GET") return error_response(405, "this address takes GET");
-            return file->second;
-        },
-        stop);
+    const auto at_once = [&](const Request& head) -> std::optional<Response> {
+        if (auto refused = refusal(head, connections.port(), token)) return refused;
+        if (head.path.starts_with("/api/")) return std::nullopt;
+        const auto file = files.find(head.path);
+        if (file == files.end()) return error_response(404, "there is nothing at this address");
+        if (head.method != "GET") return error_response(405, "this address takes GET");
+        return file->second;
+    };
+    std::atomic<bool> is_open = false;
+    connections.run({at_once,
+                     [&](const Request& request, const Connections::Reply& reply) {
+                         if (!is_open.exchange(true) && options.opened) options.opened();
+                         server.answer(request, reply);
+                     }},
+                    stop);
 }
 
 }  // namespace aftershade::serve

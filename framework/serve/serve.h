@@ -29,6 +29,7 @@ struct ServeOptions {
     int port = 0;                                       ///< 0: a free one
     bool read_only = false;
     std::function<void(const std::string& address)> ready;  ///< once it answers
+    std::function<void()> opened;  ///< a page with the token asked for the first time; on any thread
 
     /// Runs the process that draws. Called again, on another thread, where it has ended.
     RunDrawer run_drawer;

@@ -352,19 +352,29 @@ void plugin(std::string_view bytes) {
     });
 }
 
+/// As a connection gets its bytes: in pieces of this size.
+std::optional<serve::Request> arrived(std::string_view bytes, std::size_t piece, bool& is_refused) {
+    serve::Incoming incoming;
+    for (; !bytes.empty() && !is_refused && !incoming.is_whole();
+         bytes.remove_prefix(std::min(piece, bytes.size()))) {
+        const auto refusal = incoming.add(bytes.substr(0, piece));
+        if (refusal && refusal->status < 400) broken("a refusal is one");
+        is_refused = refusal.has_value();
+    }
+    return incoming.is_whole() ? std::optional(incoming.take()) : std::nullopt;
+}
+
 void http(std::string_view bytes) {
-    const serve::Framing framing = serve::framing_of(bytes);
-    if (framing.refusal && framing.refusal->status < 400) broken("a refusal is one");
-    if (framing.is_whole && bytes.size() > serve::kMaxHeadBytes + 4 + serve::kMaxBodyBytes)
-        broken("a request that is taken has the length that it may have");
-    // A connection gets its bytes one by one: what is refused early stays refused.
-    for (const std::size_t part : {bytes.size() / 3, bytes.size() / 2})
-        if (serve::framing_of(bytes.substr(0, part)).refusal && !framing.refusal)
-            broken("more bytes do not make a refused request sound");
-    if (!framing.is_whole) return;
-    const auto request = serve::parse_request(bytes);
-    if (request && request->body.size() > serve::kMaxBodyBytes) broken("a body is no larger than it may be");
-    if (request) serve::response_bytes(serve::error_response(404, request->path));
+    bool is_refused = false, is_refused_in_pieces = false;
+    const auto request = arrived(bytes, std::max<std::size_t>(bytes.size(), 1), is_refused);
+    const auto in_pieces = arrived(bytes, bytes.size() / 3 + 1, is_refused_in_pieces);
+    if (is_refused != is_refused_in_pieces || request.has_value() != in_pieces.has_value())
+        broken("how the bytes are divided decides nothing");
+    if (!request) return;
+    if (request->body.size() > serve::kMaxBodyBytes) broken("a body is no larger than it may be");
+    if (request->path != in_pieces->path || request->body != in_pieces->body)
+        broken("how the bytes are divided changes nothing");
+    serve::response_bytes(serve::error_response(404, request->path));
 }
 
 /// A list of edits, one after the other, of one look.

@@ -41,6 +41,12 @@ public:
         }
         return true;
     }
+    /// What is there of an answer, once something is.
+    std::string receive_some() const {
+        char buffer[65536];
+        const ssize_t got = ::recv(socket_, buffer, sizeof buffer, 0);
+        return got > 0 ? std::string(buffer, std::size_t(got)) : "";
+    }
     std::string receive() const {
         std::string bytes;
         char buffer[65536];

@@ -1,10 +1,14 @@
 #include "framework/serve/look_edits.h"
 
+#include <barrier>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <random>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -92,8 +96,8 @@ TEST(LookEdits, OfATextThatIsNotJsonAreRefused) {
 }
 
 TEST(LookEdits, AddAStepBesideOneThatIsNotAnObject) {
-    const std::string text = edited(R"({ "aftershade": 1, "steps": [7] })",
-                                    {{"op", "add"}, {"at", 0}, {"effect", "dof"}});
+    const std::string text =
+        edited(R"({ "aftershade": 1, "steps": [7] })", {{"op", "add"}, {"at", 0}, {"effect", "dof"}});
     EXPECT_EQ(Json::parse(text)["steps"], Json::parse(R"([{"effect": "dof"}, 7])"));
 }
 
@@ -246,6 +250,39 @@ TEST(LookModel, NeverWritesWhereItOnlyReadsNorOverAnotherProgramsChange) {
     write_text_file(path, "{}");
     EXPECT_THROW(writer.save(), Refusal);
     EXPECT_EQ(read_text_file(path, ExitCode::usage), "{}");
+}
+
+TEST(LookModel, LosesNoEditWhereTwoSaveAtOnce) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "look.json";
+    for (int round = 0; round < 50; ++round) {
+        write_text_file(path, kLook);
+        LookModel first(path, shipped_effects, false), second(path, shipped_effects, false);
+        std::barrier both(2);
+        int saved = 0, refused = 0;
+        std::string text;
+        std::mutex mutex;
+        const auto edit_and_save = [&](LookModel& model, int f_number) {
+            model.edit(
+                1, Json::array({{{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", f_number}}}));
+            both.arrive_and_wait();
+            std::string why;
+            try {
+                model.save();
+            } catch (const Refusal& refusal) {
+                why = refusal.message;
+            }
+            const std::lock_guard lock(mutex);
+            if (why.empty()) ++saved, text = model.text();
+            else if (why.find("was changed by another program") != std::string::npos) ++refused;
+        };
+        {
+            const std::jthread one([&] { edit_and_save(first, 4); });
+            edit_and_save(second, 8);
+        }
+        ASSERT_EQ(std::pair(saved, refused), std::pair(1, 1)) << "round " << round;
+        ASSERT_EQ(read_text_file(path, ExitCode::usage), text);
+    }
 }
 
 TEST(LookModel, TakesTheLastDrawnTextInThePlaceOfOneThatCannotBeDrawn) {

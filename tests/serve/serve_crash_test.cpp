@@ -3,6 +3,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,20 +18,6 @@ using namespace std::chrono_literals;
 class ServeCrash : public Serve {
 protected:
     Json state() const { return get("/api/state").json(); }
-    void write_effect(const std::string& id, const std::string& line, const std::string& head = "") {
-        const std::filesystem::path effect = folder_ / "effects" / id;
-        std::filesystem::create_directories(effect);
-        write_text(effect / "effect.json",
-                   R"({ "aftershade": 1, "id": ")" + id + R"(", "version": "1.0.0", "summary": "For a test.",
-  "inputs": { "color": { "role": "color", "doc": "Any." } },
-  "outputs": { "color": { "role": "color", "doc": "Another." } },
-  "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ] }
-)");
-        write_text(effect / "main.frag",
-                   "#version 450 core\n#include <pass>\n" + head +
-                       "void main() {\n    vec4 c = texelFetch(color, ivec2(gl_FragCoord.xy), 0);\n    " +
-                       line + "\n    out_color = c;\n}\n");
-    }
     /// Mesa's compiler recurses over a quarter of a million terms, and its stack ends.
     void write_effect_that_crashes(const std::string& id) {
         write_effect(id, "c = F(F(F(F(F(F(F(F(F(c)))))))));", "#define F(x) x*x+x*x\n");
@@ -130,6 +117,25 @@ TEST_F(ServeCrash, OfAPassThatDoesNotEndIsOneOfTheSameKind) {
     EXPECT_TRUE(faults()[0].starts_with("the GL driver did not finish within 1 s and was killed while "))
         << faults()[0];
     EXPECT_EQ(get("/api/picture?frame=1").body, first);
+}
+
+TEST_F(ServeCrash, NoEditAndNoFileOfThePageWaitsForAPassThatDoesNotEnd) {
+    std::string lines;
+    for (int i = 0; i < 6'000; ++i) lines += "c = c * 1.01 + sin(c * " + std::to_string(i) + ".0);\n";
+    write_effect("long", lines);
+    start({"--effect-path", "effects", "--pass-timeout", "5"});
+    ASSERT_EQ(edit({{"op", "add"}, {"at", 0}, {"effect", "long"}}).status, 200);
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<std::unique_ptr<Client>> waiting;
+    for (int i = 0; i < 12; ++i) {
+        waiting.push_back(std::make_unique<Client>(port_));
+        waiting.back()->send(head("GET /api/probe?frame=1&y=1&x=" + std::to_string(i)) + "\r\n");
+    }
+    EXPECT_EQ(set(2, 2).status, 200);
+    EXPECT_EQ(get("/").status, 200);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 3s) << "the time of the pass is 5 s";
+    for (const auto& client : waiting) EXPECT_EQ(parsed(client->receive()).status, 409);
+    EXPECT_GT(std::chrono::steady_clock::now() - begin, 4s) << "or nothing hung";
 }
 
 TEST_F(ServeCrash, AProcessThatCannotBeginAgainIsAnErrorOfThePictureAlone) {

@@ -46,7 +46,7 @@ protected:
         std::vector<std::string> words{"serve", "look.json", frames_ > 1 ? "in_####.exr" : "in_0001.exr",
                                        "--backend", "software"};
         words.insert(words.end(), more.begin(), more.end());
-        command_.emplace(aftershade_words(words), folder_.path());
+        command_.emplace(aftershade_words(words), folder_.path(), environment_);
         ASSERT_TRUE(command_->wait_for_lines(1)) << command_->wait().err;
         const std::string address = command_->printed();
         const std::size_t colon = address.rfind(':'), hash = address.find("/#token=");
@@ -79,6 +79,21 @@ protected:
     Json times(const std::string& query = "") const {
         return Json::parse(get("/api/picture?frame=1" + query).header("X-Aftershade-Times"));
     }
+    /// `line` changes the pixel `c`.
+    void write_effect(const std::string& id, const std::string& line, const std::string& head = "") const {
+        const std::filesystem::path effect = folder_ / "effects" / id;
+        std::filesystem::create_directories(effect);
+        write_text(effect / "effect.json",
+                   R"({ "aftershade": 1, "id": ")" + id + R"(", "version": "1.0.0", "summary": "For a test.",
+  "inputs": { "color": { "role": "color", "doc": "Any." } },
+  "outputs": { "color": { "role": "color", "doc": "Another." } },
+  "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] } ] }
+)");
+        write_text(effect / "main.frag",
+                   "#version 450 core\n#include <pass>\n" + head +
+                       "void main() {\n    vec4 c = texelFetch(color, ivec2(gl_FragCoord.xy), 0);\n    " +
+                       line + "\n    out_color = c;\n}\n");
+    }
     /// The process that draws; 0 where there is none.
     pid_t drawer() const {
         const std::string tasks = "/proc/" + std::to_string(command_->process()) + "/task";
@@ -103,6 +118,7 @@ protected:
     float pixel_aspect_ = 1;
     int frames_ = 1;
     std::string look_ = kLook;
+    Environment environment_;
     int port_ = 0;
     std::string token_;
 };

@@ -1,4 +1,5 @@
 // Which files an edit of the page may name: those of the look's and the capture's folders, and no others.
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -111,6 +112,51 @@ TEST_F(ServePaths, ThatTheLookOnDiskNamesStayAndAllowNoOthers) {
     ASSERT_EQ(edit({{"op", "mask"}, {"step", 0}, {"value", nullptr}}).status, 200);
     ASSERT_EQ(edit(mask(outside_ / "mask.png")).status, 200) << "by whoever wrote the look";
     EXPECT_EQ(edit(mask(outside_ / "other.json")).status, 403);
+}
+
+TEST_F(ServePaths, OfAShaderThatThePageWritesAreNotReadAsALook) {
+    write_effect("mine", "");
+    start_in_folders({"--effect-path", "effects"});
+    const std::string shader = read_text(folder_ / "effects/mine/main.frag");
+    const std::string use = R"({ "use": "effects/mine/main.frag" })";
+    const auto rewritten = [&](const std::string& before, const std::string& after) {
+        return post("/api/shader",
+                    Json{{"effect", "mine"}, {"file", "main.frag"}, {"before", before}, {"text", after}}
+                        .dump())
+            .status;
+    };
+    const std::string harmless = text(R"({ "effect": "vignette" })")["value"];
+    const std::string mask_outside = R"({ "effect": "vignette", "mask": { "file": )" +
+                                     Json((outside_ / "mask.png").string()).dump() + " } }";
+    ASSERT_EQ(rewritten(shader, harmless), 200);
+    const Answer used = edit(text(use));
+    EXPECT_EQ(used.status, 403);
+    EXPECT_NE(used.body.find("main.frag' is a shader, which pages can write"), std::string::npos)
+        << used.body;
+    ASSERT_EQ(rewritten(harmless, text(mask_outside)["value"]), 200);
+    EXPECT_EQ(ended_by(SIGINT), 130);
+
+    look_ = text(use)["value"];
+    start({"--effect-path", "effects"});
+    const Json faults = get("/api/state").json()["faults"];
+    ASSERT_EQ(faults.size(), 1u) << "the look on disk has no right to it either";
+    EXPECT_NE(faults[0]["message"].get<std::string>().find("is a shader"), std::string::npos) << faults;
+    EXPECT_EQ(edit(mask(outside_ / "mask.png")).status, 403) << "it is not named on disk";
+    EXPECT_EQ(edit(text(R"({ "effect": "absent" }, )" + mask_outside)).status, 403) << "beside other faults";
+}
+
+TEST_F(ServePaths, OfAUsedLookThatChangesLaterAreRefusedByTheProcessThatDrawsToo) {
+    start_in_folders();
+    ASSERT_EQ(edit(text(R"({ "use": "other.json" })")).status, 200);
+    EXPECT_EQ(get("/api/picture?frame=1").status, 200);
+    write_text(folder_ / "other.json", text(R"({ "effect": "vignette", "mask": { "file": )" +
+                                            Json((outside_ / "mask.png").string()).dump() + " } }")["value"]);
+    kill(drawer(), SIGKILL);  // the next one reads the look anew
+    const Answer picture = get("/api/picture?frame=1");
+    EXPECT_EQ(picture.status, 403);
+    EXPECT_NE(picture.body.find("mask.png' is not a file that the look named when it was read"),
+              std::string::npos)
+        << picture.body;
 }
 
 }  // namespace

@@ -278,13 +278,6 @@ TEST_F(Serve, CountsTheNanOfTheFinalPicture) {
     EXPECT_EQ(times()["non_finite"], 1);
 }
 
-TEST_F(Serve, WritesNothingWithReadOnly) {
-    start({"--read-only"});
-    ASSERT_EQ(set(2).status, 200);
-    EXPECT_EQ(post("/api/save").status, 403);
-    EXPECT_EQ(read_text(folder_ / "look.json"), kLook);
-}
-
 TEST_F(Serve, RefusesWhoeverIsNotItsPage) {
     start();
     const std::string token = "\r\nX-Aftershade-Token: " + token_;
