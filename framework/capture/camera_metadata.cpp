@@ -37,7 +37,7 @@ struct StoredNumber {
     std::string attribute;
 };
 
-/// The first attribute of the source that the header has, in `unit`; nullopt where it is no number.
+/// The first attribute of the source that the header has, in `unit`; nullopt where it is not a number.
 std::optional<StoredNumber> find_number(const ExrMetadata& metadata, const CameraSource& source,
                                         const std::string& unit) {
     const std::vector<std::string> names = metadata.names();
@@ -110,6 +110,33 @@ Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Cam
     if (const auto* px = jitter ? std::get_if<std::vector<float>>(&*jitter) : nullptr; px && px->size() == 2)
         camera.jitter_px = {double((*px)[0]), double((*px)[1])};
     return camera;
+}
+
+std::vector<std::string> camera_faults(const ExrMetadata& metadata, const Profile& profile,
+                                       const Camera& known) {
+    std::vector<std::pair<std::string, std::string>> sources;  // field and attribute
+    const std::vector<std::string> names = metadata.names();
+    for (const auto& [field, source] : profile.camera)
+        for (const std::string& pattern : source.attributes)
+            for (const std::string& name : names)
+                if (matches_pattern(name, pattern)) sources.emplace_back(field, name);
+    for (const CameraField& field : camera_fields())
+        sources.emplace_back(field.name, "aftershade/camera/" + field.name);
+    for (const StandardAttribute& standard : kStandard)
+        sources.emplace_back(standard.field, standard.attribute);
+
+    std::vector<std::string> faults;
+    for (const auto& [field, attribute] : sources) {
+        if (!metadata.value(attribute) || known.get(field)) continue;
+        const auto number = metadata.number(attribute);
+        const bool is_signed = find_camera_field(field)->min < 0;
+        if (number && !std::isnan(*number) && (is_signed || *number >= 0)) continue;
+        faults.push_back("attribute " + attribute +
+                         (number && !std::isnan(*number) ? " is below 0" : " is not a number") +
+                         ", so it does not give the camera's " + field + " (set \"" + field +
+                         "\" in capture.json's camera)");
+    }
+    return faults;
 }
 
 void add_attributes(const Camera& camera, const std::vector<CaptureLight>& lights,

@@ -19,6 +19,11 @@ namespace aftershade {
 /// of `known` stands above the header's where matrices are recognized by it.
 Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Camera& known = {});
 
+/// Attributes that are below 0 or not a number, and should give a field of the camera that `known` lacks. In
+/// whole sentences.
+std::vector<std::string> camera_faults(const ExrMetadata& metadata, const Profile& profile,
+                                       const Camera& known);
+
 /// The way back: aftershade/camera/..., OpenEXR's own focus, aperture and nominalFocalLength, both matrices,
 /// aftershade/jitter_px and aftershade/lights, each where it is known.
 void add_attributes(const Camera& camera, const std::vector<CaptureLight>& lights,

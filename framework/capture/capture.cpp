@@ -13,6 +13,7 @@
 #include "framework/capture/layer_roles.h"
 #include "framework/capture/sample_means.h"
 #include "framework/core/error.h"
+#include "framework/core/units.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -109,6 +110,14 @@ void require_one_picture(const std::string& role, const FrameFile& file, const F
                     " (render both at one size; a crop keeps the whole picture's display window)");
 }
 
+std::string shape_fault(const std::string& role, const FrameFile& file, const FrameFile& main) {
+    const float own = file.merged().pixel_aspect, others = main.merged().pixel_aspect;
+    if (own == others) return "";
+    return role + " is read from a file with pixel aspect " + format_number(double(own)) +
+           ", color from one with " + format_number(double(others)) +
+           "; its pixels are taken as those of color (render both alike)";
+}
+
 }  // namespace
 
 CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits)
@@ -179,6 +188,7 @@ void CaptureReader::find_roles(OpenFrame& open) const {
     if (!sequence_.channels.contains(kColorRole) && !names.contains(kColorRole))
         add_role(open, kColorRole, RoleDecoding{});
     take_data_of_other_layer(open);
+    note_first_of_parts(open);
     note_assumed_space(open);
     note_data_read_as_color(open);
     find_cryptomatte_roles(open);
@@ -201,6 +211,8 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
         auto& file = open.role_files[role];
         file = open_file(pattern.path(frame), role, deep_layers, open.header);
         require_one_picture(role, *file, *open.main);
+        if (std::string fault = shape_fault(role, *file, *open.main); !fault.empty())
+            open.header.warnings.push_back(std::move(fault));
     }
     const ExrPart& part = open.main->merged();
     CaptureHeader& header = open.header;
@@ -216,6 +228,8 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
     choose_layer(open);
     header.camera = sequence_.camera;
     header.camera.complete_from(camera_of_metadata(part, *open.profile, sequence_.camera));
+    for (std::string& fault : camera_faults(part.metadata, *open.profile, sequence_.camera))
+        header.warnings.push_back(std::move(fault));
     header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
     find_roles(open);
 
@@ -312,6 +326,8 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     if (role.kind == RoleKind::distance || role.kind == RoleKind::motion)
         if (const NonFinitePixels found = find_non_finite(image, true, exr_threads()); found.nan > 0)
             capture.non_finite[name] = found;
+    if (std::string fault = range_fault(name, image, source.decoding); !fault.empty())
+        capture.header.warnings.push_back(std::move(fault));
     if (source.decoding.is_mean) repair_means(image);
     if (role.kind == RoleKind::distance) {
         decode_depth(image, source.decoding,

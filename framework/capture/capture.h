@@ -15,8 +15,8 @@
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
-#include "framework/capture/stored_colors.h"
 #include "framework/file/exr_file.h"
+#include "framework/file/stored_colors.h"
 #include "framework/image/camera.h"
 #include "framework/image/color_space.h"
 #include "framework/image/image.h"
@@ -169,6 +169,7 @@ private:
     void take_data_of_other_layer(OpenFrame& open) const;
     void find_roles(OpenFrame& open) const;
     void note_assumed_space(OpenFrame& open) const;
+    void note_first_of_parts(OpenFrame& open) const;
     void note_data_read_as_color(OpenFrame& open) const;
     void find_cryptomatte_roles(OpenFrame& open) const;
     std::optional<FoundChannels> find_role_channels(const OpenFrame& open, const FrameFile& file,

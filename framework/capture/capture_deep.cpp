@@ -41,6 +41,12 @@ void CaptureReader::read_deep_layers(OpenFrame& open, std::span<const std::strin
     }
     open.layer = -1;
     capture.deep = picture->reduction();
+    if (const std::uint64_t nan = capture.deep->nan_pixels; nan > 0) {
+        const auto width = std::size_t(picture->width());
+        NonFinitePixels& found = capture.non_finite[kDepthRole];
+        found.nan = std::size_t(nan);
+        found.x = int(capture.deep->first_nan % width), found.y = int(capture.deep->first_nan / width);
+    }
     capture.deep_layers = picture->layers();
 }
 

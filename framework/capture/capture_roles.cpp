@@ -174,6 +174,18 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
                     "' (choose one layer for all with --layer, or 'layer' in capture.json)"};
 }
 
+/// Passes of one file that name nothing but themselves.
+void CaptureReader::note_first_of_parts(OpenFrame& open) const {
+    const auto color = open.roles.find(kColorRole);
+    if (!sequence_.layer.empty() || color == open.roles.end() || color->second.channels.empty() ||
+        color->second.channels[0][0] != "R" || sequence_.channels.contains(kColorRole))
+        return;
+    if (const auto others = color->second.file->other_color_parts(); !others.empty())
+        open.header.notes.push_back("color is read from the first part with R, G and B; " +
+                                    list_of_names(others, "and") + (others.size() == 1 ? " has" : " have") +
+                                    " them, too (choose with --layer, or 'layer' in capture.json)");
+}
+
 /// Normals and positions under a name that many programs use may be in the camera's space.
 void CaptureReader::note_assumed_space(OpenFrame& open) const {
     if (sequence_.profile != "auto" || open.profile->id != kNativeProfile) return;

@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 
+#include "framework/capture/capture_grammar.h"
 #include "framework/core/error.h"
 #include "framework/core/parallel.h"
 #include "framework/image/coverage.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -186,6 +188,26 @@ void decode_vectors(std::span<float> values, std::size_t first, const RoleDecodi
 }
 
 }  // namespace
+
+std::string range_fault(const std::string& role, const Image& stored, const RoleDecoding& decoding) {
+    constexpr float kSlack = 1e-3f;  // of half floats and filters
+    const RoleKind kind = kind_of_role(role);
+    const bool is_mask = kind == RoleKind::coverage;
+    const bool is_ranged =
+        decoding.encoding == DepthEncoding::z_buffer || decoding.encoding == DepthEncoding::normalized;
+    if (!is_mask && (kind != RoleKind::distance || !is_ranged)) return "";
+    const auto is_outside = [&](float value) {
+        const bool counts = std::isfinite(value) && (is_mask || value < decoding.no_hit);
+        return counts && (value < -kSlack || value > 1 + kSlack);
+    };
+    if (std::ranges::none_of(stored.floats(), is_outside)) return "";
+    if (is_mask)
+        return role +
+               " has values outside of 0 to 1, which no coverage has: check its channel in capture.json";
+    return role + " is stored outside of 0 to 1 in places, and its encoding, " +
+           depth_encoding_names()[std::size_t(decoding.encoding)] +
+           ", has no such values: check the channel and \"encoding\" in capture.json";
+}
 
 void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
     const bool ranged = is_ranged(decoding);

@@ -21,6 +21,10 @@ struct DecodeContext {
     int threads = 1;               ///< that may work on the image at a time
 };
 
+/// Why what the file stores of a role cannot be what its decoding says: a depth or a mask outside of 0 to 1.
+/// "" where it can. Without figures, so that a sequence says it once.
+std::string range_fault(const std::string& role, const Image& stored, const RoleDecoding& decoding);
+
 /// Depth in m along the view axis; +inf where nothing was hit. Throws Error(ExitCode::capture) where near and
 /// far, or the lens of a radial depth, are needed and not known.
 void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context = {});

@@ -1,5 +1,7 @@
 // How the stored channels of a role become its image.
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "framework/capture/capture_grammar.h"
 #include "framework/core/text.h"
@@ -39,7 +41,7 @@ std::vector<Key> distance_keys() {
     return {
         optional("encoding", choice(depth_encoding_names()),
                  "inverse: 1 / distance; normalized: linear from near to far.", R"("linear")"),
-        optional("reversed", boolean(), "1 is near, 0 is far.", "false"),
+        optional("reversed", boolean(), "1 is near, 0 is far; of z_buffer and normalized.", "false"),
         optional(
             "kind", choice({"planar", "radial"}),
             "Distance along the camera's axis, or from its position (needs focal_length and sensor_width).",
@@ -92,6 +94,39 @@ std::vector<Key> keys_of_kind(const ChannelRole& role) {
     return keys;
 }
 
+/// Else every value would be one and the same.
+void check_scale(const Node& node, const std::string& thing, Diagnostics& diagnostics) {
+    const Node* const scale = node.find("scale");
+    const auto is_zero = [](const Node& at) { return at.is_number() && at.number == 0; };
+    if (scale && (is_zero(*scale) || std::ranges::any_of(scale->items, is_zero)))
+        diagnostics.error(scale->place, thing + " has a 'scale' of 0, which makes every value 0");
+}
+
+/// Only what is stored from 0 to 1 can count from the other end.
+void check_reversed(const Node& node, const std::string& thing, Diagnostics& diagnostics) {
+    const Node *const reversed = node.find("reversed"), *const encoding = node.find("encoding");
+    if (!reversed || !reversed->boolean ||
+        (encoding && (encoding->string == "z_buffer" || encoding->string == "normalized")))
+        return;
+    diagnostics.error(reversed->place,
+                      thing + " is 'reversed', which needs the 'encoding' z_buffer or normalized");
+}
+
+std::vector<grammar::Rule> rules_of_kind(RoleKind kind) {
+    std::vector<grammar::Rule> rules;
+    if (kind == RoleKind::distance || kind == RoleKind::motion)
+        rules.push_back(grammar::custom_rule(
+            {.check = check_scale, .schema = R"({"properties": {"scale": {"not": {"anyOf": [{"const": 0},
+                 {"type": "array", "contains": {"const": 0}}]}}}})"}));
+    if (kind == RoleKind::distance)
+        rules.push_back(grammar::custom_rule(
+            {.check = check_reversed,
+             .schema = R"({"if": {"required": ["reversed"], "properties": {"reversed": {"const": true}}},
+                 "then": {"required": ["encoding"],
+                          "properties": {"encoding": {"enum": ["z_buffer", "normalized"]}}}})"}));
+    return rules;
+}
+
 void append(std::vector<Key>& keys, std::vector<Key> more) {
     keys.insert(keys.end(), more.begin(), more.end());
 }
@@ -122,6 +157,7 @@ Block make_decoding(const ChannelRole& role) {
     block.rules.push_back(
         grammar::at_least_one_of(ways, who + " needs 'channels', or 'sum' with lists of channels"));
     append(block.keys, keys_of_kind(role));
+    for (grammar::Rule& rule : rules_of_kind(role.kind)) block.rules.push_back(std::move(rule));
     return block;
 }
 

@@ -146,13 +146,16 @@ private:
     void gather(std::size_t pixel) {
         samples_.clear();
         constexpr double kFar = std::numeric_limits<double>::infinity();
+        bool is_known = true;
         for (std::uint32_t i = geometry_.first[pixel]; i < geometry_.first[pixel + 1]; ++i) {
             DeepSample sample{i, known(geometry_.front[i], kFar), 0, 1};
+            is_known &= !std::isnan(geometry_.front[i]);
             sample.back = geometry_.back.empty() ? sample.front : known(geometry_.back[i], sample.front);
             if (!std::isfinite(sample.back) || !std::isfinite(sample.front)) sample.back = sample.front;
             if (!geometry_.alpha.empty()) sample.alpha = std::clamp(known(geometry_.alpha[i], 0), 0.0, 1.0);
             samples_.push_back(sample);
         }
+        if (!is_known && layers_.reduction_.nan_pixels++ == 0) layers_.reduction_.first_nan = pixel;
         std::stable_sort(samples_.begin(), samples_.end(), [](const DeepSample& a, const DeepSample& b) {
             return a.front != b.front ? a.front < b.front : a.rank() < b.rank();
         });

@@ -24,6 +24,10 @@ std::string DeepPart::channel_called(const std::string& name) const {
     return found;
 }
 
+int DeepPart::width() const {
+    return file_.parts()[std::size_t(part_)].data_window.width();
+}
+
 void DeepPart::expect(std::span<const std::string> channels) {
     expected_.insert(channels.begin(), channels.end());
 }

@@ -27,6 +27,7 @@ public:
     DeepPart(const ExrFile& file, int part, int layers);
 
     int layers() const { return layers_; }
+    int width() const;
     /// Channels that are read next, to unpack them together.
     void expect(std::span<const std::string> channels);
     /// Interleaved in the order given, over the part's data window; `outside` where no sample is, 0 where

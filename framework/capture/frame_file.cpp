@@ -101,6 +101,18 @@ int FrameFile::find_color_part() const {
     return first;
 }
 
+std::vector<std::string> FrameFile::other_color_parts() const {
+    const int chosen = find_color_part();
+    std::vector<std::string> others;
+    if (chosen < 0 || is_color_layer(layer_of(file_.parts()[std::size_t(chosen)], view_))) return others;
+    for (int i = 0; i < int(file_.parts().size()); ++i) {
+        const ExrPart& part = file_.parts()[std::size_t(i)];
+        const bool has_colors = has_channel(part, "R") && has_channel(part, "G") && has_channel(part, "B");
+        if (i != chosen && !part.is_deep() && is_in_view(part) && has_colors) others.push_back(part.name);
+    }
+    return others;
+}
+
 void FrameFile::choose_view(const std::string& wanted) {
     const std::vector<ExrPart>& parts = file_.parts();
     for (const ExrPart& part : parts)

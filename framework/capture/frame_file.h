@@ -38,6 +38,9 @@ public:
     const ExrPart& merged() const { return merged_; }
     const ExrFile& file() const { return file_; }
 
+    /// Parts with an R, G and B of their own beside the one that is the picture, where no name says which is.
+    std::vector<std::string> other_color_parts() const;
+
     Window window_of(const std::string& channel) const;
     PixelType type_of(const std::string& channel) const;
     const std::string& compression_of(const std::string& channel) const;

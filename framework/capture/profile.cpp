@@ -176,6 +176,7 @@ ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart
     const Profile* const native = profile_called(profiles, "native");
     if (native && has_native_names(part)) return {native, "attribute aftershade/channels"};
     std::vector<ProfileChoice> by_attribute, by_channels;
+    std::string plain;  // what fits native
     std::size_t most_channels = 1;
     for (const Profile& profile : profiles) {
         for (const std::string& pattern : profile.detect_attributes) {
@@ -187,13 +188,20 @@ ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart
         RoleDecoding wanted;
         wanted.layers = {profile.detect_channels};
         const auto found = find_in(wanted, find_layer(profile, part), part, Spelling::exact);
-        if (!found || profile.detect_channels.size() < most_channels) continue;
+        if (!found) continue;
+        // Every picture may have native's names, so that any name of a producer says more.
+        if (&profile == native) {
+            plain = "channel " + found->front().back();
+            continue;
+        }
+        if (profile.detect_channels.size() < most_channels) continue;
         // A profile that asks for more of what is there says more of where the file comes from.
         if (profile.detect_channels.size() > most_channels) by_channels.clear();
         most_channels = profile.detect_channels.size();
         by_channels.push_back({&profile, "channel " + found->front().back()});
     }
     leave_out_rewriters(by_attribute);
+    if (by_channels.empty() && !plain.empty()) by_channels.push_back({native, plain});
     // An attribute is one producer's own mark; channel names are shared by several.
     const auto& fitting = by_attribute.empty() ? by_channels : by_attribute;
     if (fitting.size() == 1) return fitting.front();

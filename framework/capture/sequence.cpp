@@ -156,7 +156,8 @@ struct FolderSequence {
 };
 
 /// The pattern that most *.exr files of a folder share: their names with the last group of digits left open.
-FramePattern pattern_of_folder(const fs::path& folder) {
+FramePattern pattern_of_folder(const fs::path& folder, const std::string& argument,
+                               Diagnostics& diagnostics) {
     std::map<std::pair<std::string, std::string>, FolderSequence> sequences;  // by what is around the number
     std::error_code failure;
     for (const auto& entry : fs::directory_iterator(folder, failure)) {
@@ -182,6 +183,13 @@ FramePattern pattern_of_folder(const fs::path& folder) {
         1)
         throw Error(ExitCode::capture,
                     folder.string() + ": holds several sequences; name one by its pattern, such as " + text);
+    if (sequences.size() > 1) {
+        const auto other = sequences.begin() == most ? std::next(most) : sequences.begin();
+        diagnostics.warning({argument}, "only " + fs::path(text).filename().string() +
+                                            " of the folder is read, not " + other->first.first +
+                                            std::string(other->second.digits.begin()->first, '#') +
+                                            other->first.second + " (name a pattern to choose)");
+    }
     return pattern_on_disk(FramePattern(text), false);
 }
 
@@ -274,7 +282,7 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
         if (!read) return std::nullopt;
         sequence = std::move(*read);
     } else if (std::error_code failure; fs::is_directory(argument, failure)) {
-        sequence.files = pattern_of_folder(argument);
+        sequence.files = pattern_of_folder(argument, argument, diagnostics);
     } else {
         sequence.files = file_or_pattern(argument);
     }

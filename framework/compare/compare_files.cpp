@@ -92,6 +92,11 @@ private:
         if (ours.pixel_aspect != theirs.pixel_aspect)
             warn(fmt::format("another pixel aspect: {:.6g} in the reference, {:.6g} in the test image",
                              ours.pixel_aspect, theirs.pixel_aspect));
+        if (ours.first_view != theirs.first_view && !ours.first_view.empty() && !theirs.first_view.empty())
+            warn(fmt::format(
+                "the same names are other views: the first is '{}' in the reference, '{}' in the test "
+                "image",
+                ours.first_view, theirs.first_view));
         const auto is_color = [](const LayerInfo& layer) { return is_perceptual(layer.role); };
         if (reference_.format() != test_.format() || ours.colors == theirs.colors ||
             std::ranges::none_of(reference_.layers(), is_color))

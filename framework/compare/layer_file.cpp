@@ -1,7 +1,6 @@
 #include "framework/compare/layer_file.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +16,7 @@
 #include "framework/core/lfs_pointer.h"
 #include "framework/file/hdr_file.h"
 #include "framework/file/png_file.h"
+#include "framework/file/stored_colors.h"
 
 namespace aftershade {
 
@@ -59,11 +59,6 @@ const ExrChannel* find_channel(const ExrPart& part, const std::string& name) {
     return found == part.channels.end() ? nullptr : &*found;
 }
 
-std::string text_of(const Chromaticities& primaries) {
-    if (const std::string name = name_of_primaries(primaries); !name.empty()) return name;
-    return fmt::format("primaries {:.4f}", fmt::join(primaries, " "));
-}
-
 bool is_subsampled(const ExrChannel& channel) {
     return channel.x_sampling != 1 || channel.y_sampling != 1;
 }
@@ -85,7 +80,9 @@ void LayerFile::Impl::open_exr(ExrFile file) {
     format = "OpenEXR";
     exr = std::move(file);
     const std::vector<ExrPart>& parts = exr->parts();
-    traits.colors = text_of(stored_primaries(parts.front().metadata));
+    traits.first_view = parts.front().view;
+    if (const auto views = parts.front().metadata.texts("multiView"); views && traits.first_view.empty())
+        traits.first_view = views->empty() ? "" : views->front();
     traits.pixel_aspect = parts.front().pixel_aspect;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = parts.size() > 1 ? parts[i].name : "";
@@ -101,6 +98,12 @@ void LayerFile::Impl::open_exr(ExrFile file) {
             layers.push_back(std::move(layer));
         }
     }
+    // The first part with colours says what they are; without any, the first part.
+    const auto color =
+        std::ranges::find_if(layers, [](const LayerInfo& at) { return is_perceptual(at.role); });
+    const int hero = color == layers.end() ? 0 : part_of(*color);
+    const StoredColors stored = stored_colors(parts.front().metadata, parts[std::size_t(hero)].metadata);
+    traits.colors = stored.meaning();
 }
 
 void LayerFile::Impl::open_flat(Image image, LayerRole color) {
@@ -121,6 +124,7 @@ void LayerFile::Impl::open_png() {
     PngColor color;
     Image image = read_png(path, &color);
     traits.colors = color.space;
+    traits.pixel_aspect = color.pixel_aspect;
     if (color.is_animated) traits.left_out.push_back("all pictures of the animation but the first");
     if (!color.is_srgb()) traits.notes.push_back("its colours are of " + color.space + ", and are read as sRGB");
     if (color.gamma) {

@@ -15,6 +15,7 @@ namespace aftershade {
 struct FileTraits {
     std::string colors;  ///< what the numbers of colours mean: "sRGB", "rec709"
     float pixel_aspect = 1;
+    std::string first_view;  ///< whose layers have no view in their names; "" where the file names none
     std::vector<std::string> left_out;  ///< what no layer has: "smaller levels of the tiles of part 'a'"
     std::vector<std::string> notes;     ///< how colours were read, where it is not as they are stored
 };

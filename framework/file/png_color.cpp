@@ -125,6 +125,8 @@ bool is_srgb_profile(Bytes profile) {
 void PngColorReader::read(const std::string& type, Bytes data) {
     if (type == "acTL") is_animated_ = true;
     else if (type == "sRGB") has_srgb_ = true;
+    else if (type == "pHYs" && data.size() == 9 && number_at(data, 0) > 0 && number_at(data, 4) > 0)
+        pixel_aspect_ = float(double(number_at(data, 4)) / double(number_at(data, 0)));
     else if (type == "cICP" && data.size() == 4) {
         has_cicp_ = true;
         // ITU-T H.273: primaries of BT.709, sRGB's curve, RGB, full range.
@@ -158,6 +160,7 @@ void PngColorReader::read(const std::string& type, Bytes data) {
 PngColor PngColorReader::color() const {
     PngColor color;
     color.is_animated = is_animated_;
+    color.pixel_aspect = pixel_aspect_;
     const auto take = [&](const std::string& space) {
         if (!space.empty()) color.space = space;
         return color;

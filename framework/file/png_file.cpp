@@ -192,6 +192,33 @@ std::optional<PngColor> read_png_color(const fs::path& path) {
     return visit_chunks(path, read) ? std::optional(colors.color()) : std::nullopt;
 }
 
+namespace {
+
+/// stb leaves colours that the palette lacks as its memory has them. With `filler` for all of these; nullopt
+/// where the picture has no palette, or a whole one.
+std::optional<std::string> with_whole_palette(std::span<const unsigned char> bytes, char filler) {
+    constexpr std::size_t kDepthAt = kSignatureBytes + kChunkHeadBytes + 8;
+    if (bytes.size() <= kDepthAt + 1 || bytes[kDepthAt + 1] != 3) return std::nullopt;
+    const std::size_t whole = std::size_t(3) << std::min<unsigned>(bytes[kDepthAt], 8);
+    for (std::size_t at = kSignatureBytes; at + kChunkHeadBytes + kChecksumBytes <= bytes.size();) {
+        const std::size_t length = number_at(bytes, at), end = at + kChunkHeadBytes + length;
+        if (end + kChecksumBytes > bytes.size()) break;
+        if (std::string(bytes.begin() + std::ptrdiff_t(at) + 4, bytes.begin() + std::ptrdiff_t(at) + 8) ==
+            "PLTE") {
+            if (length >= whole) return std::nullopt;
+            std::string colors(bytes.begin() + std::ptrdiff_t(at + kChunkHeadBytes),
+                               bytes.begin() + std::ptrdiff_t(end));
+            colors.resize(whole, filler);
+            return std::string(bytes.begin(), bytes.begin() + std::ptrdiff_t(at)) + chunk("PLTE", colors) +
+                   std::string(bytes.begin() + std::ptrdiff_t(end + kChecksumBytes), bytes.end());
+        }
+        at = end + kChecksumBytes;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
 Image read_png(const fs::path& path, PngColor* color) {
     const std::string text = read_bytes(path);
     const std::span bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size());
@@ -210,8 +237,9 @@ Image read_png(const fs::path& path, PngColor* color) {
     check_chunks(path, bytes, [&](const auto& type, const auto data) { colors.read(type, data); });
     if (color) *color = colors.color();
     const bool is_wide = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
-    const auto load = [&](auto* from_memory, float maximum) {
-        const auto loaded = from_memory(bytes.data(), size, &width, &height, &channels, 0);
+    const auto load = [&](auto* from_memory, float maximum, std::span<const unsigned char> file) {
+        stb::bytes_left = stb::kMaxImageBytes;
+        const auto loaded = from_memory(file.data(), int(file.size()), &width, &height, &channels, 0);
         const std::unique_ptr<std::remove_pointer_t<decltype(loaded)>, decltype(&stbi_image_free)> pixels(
             loaded, &stbi_image_free);
         if (!pixels) fail(path, fmt::format("damaged: {}", stbi_failure_reason()));
@@ -221,7 +249,17 @@ Image read_png(const fs::path& path, PngColor* color) {
                        [&](auto value) { return static_cast<float>(value) / maximum; });
         return image;
     };
-    return is_wide ? load(&stbi_load_16_from_memory, 65535.0f) : load(&stbi_load_from_memory, 255.0f);
+    if (is_wide) return load(&stbi_load_16_from_memory, 65535.0f, bytes);
+    const auto load_filled = [&](const std::string& file) {
+        return load(&stbi_load_from_memory, 255.0f,
+                    {reinterpret_cast<const unsigned char*>(file.data()), file.size()});
+    };
+    const auto black = with_whole_palette(bytes, '\0'), white = with_whole_palette(bytes, '\xff');
+    if (!black) return load(&stbi_load_from_memory, 255.0f, bytes);
+    Image image = load_filled(*black);
+    if (!std::ranges::equal(image.floats(), load_filled(*white).floats()))
+        fail(path, "damaged: a pixel has a colour that the palette (chunk PLTE) lacks");
+    return image;
 }
 
 }  // namespace aftershade

@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kMaxOrigin_px = 1'000'000;
 constexpr double kMaxScale = 64;
+constexpr double kMaxAspect = 100;
 
 struct CameraMember {
     const char* field;
@@ -229,6 +230,17 @@ void Capture::set_windows(const Window& data, const Window& display) {
         header.data_window = internal_window(data);
         header.display_window = internal_window(display);
     });
+}
+
+double Capture::pixel_aspect() const noexcept {
+    return double(data_->capture.header.pixel_aspect);
+}
+
+void Capture::set_pixel_aspect(double aspect) {
+    if (!(aspect >= 1 / kMaxAspect && aspect <= kMaxAspect))
+        fail_at(ErrorKind::usage, "pixel aspect",
+                fmt::format("{:g} is not from {:g} to {:g}", aspect, 1 / kMaxAspect, kMaxAspect));
+    own().capture.header.pixel_aspect = float(aspect);
 }
 
 double Capture::scale() const noexcept {

@@ -214,8 +214,7 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
         shown = picture(scaled, request);
     }
     MadePicture made;
-    const bool is_false_color = request.view.starts_with("role:") || request.view.starts_with("tap:");
-    made.png = quick_png(shown, !is_false_color);
+    made.png = quick_png(shown, !is_false_color(request.view));
     nlohmann::ordered_json times;
     times["passes"] = nlohmann::ordered_json::array();
     for (const graph::PassTime& time : scaled.result.times) {

@@ -129,6 +129,22 @@ Tap tap_of(const std::string& view, const Pipeline& pipeline) {
     throw Error(ExitCode::usage, "the look has no tap '" + text + "'");
 }
 
+namespace {
+
+/// Light with alpha, which is shown as a display shows it.
+bool is_picture(const std::string& role) {
+    const auto contract = find_role(role);
+    return contract && contract->kind == RoleKind::light && !contract->is_share && contract->channels == 4;
+}
+
+}  // namespace
+
+bool is_false_color(const std::string& name) {
+    if (name.starts_with("tap:")) return true;
+    const std::string role = name.starts_with("role:") ? name.substr(5) : "";
+    return !role.empty() && role != kDisplayRole && !is_picture(role);
+}
+
 Image view_picture(const View& view) {
     if (view.name == "final") return final_picture(view);
     if (view.name == "before") {
@@ -146,9 +162,7 @@ Image view_picture(const View& view) {
     }
     const Image* image = view.name.starts_with("role:") ? find_image(view, what) : nullptr;
     if (!image) throw Error(ExitCode::usage, "there is no view '" + view.name + "' of this frame");
-    const auto contract = find_role(what);
-    if (contract && contract->kind == RoleKind::light && !contract->is_share && image->channels() == 4)
-        return light_picture(*image, view);
+    if (is_picture(what)) return light_picture(*image, view);
     if (what == kDisplayRole) return final_picture(view);
     return false_color_picture(what, *image, view.capture.header);
 }

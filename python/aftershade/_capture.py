@@ -126,6 +126,15 @@ class Capture:
         self._native.color_space = name
 
     @property
+    def pixel_aspect(self) -> float:
+        """Width of a pixel over its height: 2 for those of an anamorphic lens. 1 of arrays unless it is set."""
+        return self._native.pixel_aspect
+
+    @pixel_aspect.setter
+    def pixel_aspect(self, aspect: float) -> None:
+        self._native.pixel_aspect = aspect
+
+    @property
     def scale(self) -> float:
         """Size of the pixels against those that values in px are meant for."""
         return self._native.scale

@@ -70,6 +70,7 @@ void bind_capture(nb::module_& module) {
                 self.set_windows(window_of(data), window_of(display));
             },
             "data"_a, "display"_a)
+        .def_prop_rw("pixel_aspect", &api::Capture::pixel_aspect, &api::Capture::set_pixel_aspect)
         .def_prop_rw("scale", &api::Capture::scale, &api::Capture::set_scale)
         .def_prop_rw("color_space", &api::Capture::color_space, &api::Capture::set_color_space)
         .def_prop_rw(

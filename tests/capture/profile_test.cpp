@@ -1,6 +1,7 @@
 #include "framework/capture/profile.h"
 
 #include <algorithm>
+#include <map>
 
 #include "tests/capture/capture_files.h"
 
@@ -96,6 +97,13 @@ TEST(Profile, OfTheShippedOnesIsFoundByWhatFilesReallyHold) {
     EXPECT_EQ(detect_profile(profiles, part_with({"B", "G", "R"}), "f").profile->id, "native");
     const auto blender = part_with({"View.Combined.R", "View.Combined.G", "View.Combined.B", "View.Depth.Z"});
     EXPECT_EQ(detect_profile(profiles, blender, "f").profile->id, "blender");
+    // Each beside an R, G and B that native reads, too.
+    for (const auto& [id, channels] : std::map<std::string, std::vector<std::string>>{
+             {"unreal", {"R", "G", "B", "A", "FinalImageMovieRenderQueue_WorldDepth.R"}},
+             {"unity", {"R", "G", "B", "Beauty.R", "Depth.R", "Motion Vectors.R"}},
+             {"falcor", {"R", "G", "B", "mvec.R", "mvec.G", "linearZ.R"}},
+             {"arnold", {"R", "G", "B", "Z", "motionvector.R"}}})
+        EXPECT_EQ(detect_profile(profiles, part_with(channels), "f").profile->id, id);
     const ExrFile real(AFTERSHADE_SOURCE_DIR "/scenes/suzanne/gbuffer_0004.exr");
     const ProfileChoice choice = detect_profile(profiles, real.parts().front(), "f");
     EXPECT_EQ(choice.profile->id, "blender");

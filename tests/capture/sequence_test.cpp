@@ -105,7 +105,9 @@ TEST(Sequence, IsItsNumbersHoweverTheyArePadded) {
         for (const char* name : c.names) write_text(folder / name, "");
         write_text(folder / "b.1.exr", "");
         for (const char* pattern : {"", "a.####.exr", "a.%d.exr", "a.@.exr", "a.##.exr"}) {
-            const Sequence sequence = opened((folder / pattern).string());
+            Diagnostics said;  // of b.1.exr, where the folder is named
+            const Sequence sequence = open_sequence((folder / pattern).string(), said).value_or(Sequence{});
+            EXPECT_EQ(said.all().size(), *pattern == '\0' ? 1u : 0u) << pattern;
             EXPECT_EQ(sequence.frames, c.frames) << pattern;
             for (std::size_t i = 0; i < c.frames.size(); ++i)
                 EXPECT_EQ(sequence.path_of(c.frames[i]).filename(), c.names[i]) << pattern;
@@ -117,6 +119,23 @@ TEST(Sequence, OfAFolderTakesExtensionsInCapitals) {
     const TemporaryFolder folder;
     for (const char* name : {"A_0001.EXR", "A_0002.EXR"}) write_text(folder / name, "");
     EXPECT_EQ(opened(folder.path().string()).path_of(2), folder / "A_0002.EXR");
+}
+
+TEST(Sequence, OfAFolderWithFilesOfAnotherSaysWhichIsRead) {
+    const TemporaryFolder folder;
+    for (const char* name : {"shot_v1_0001.exr", "shot_v1_0002.exr", "shot_v2_0001.exr", "notes.exr"})
+        write_text(folder / name, "");
+    Diagnostics diagnostics;
+    const auto sequence = open_sequence(folder.path().string(), diagnostics);
+    ASSERT_TRUE(sequence);
+    EXPECT_EQ(sequence->frames, (std::vector<int>{1, 2}));
+    EXPECT_EQ(test::lines_of(diagnostics),
+              Lines{folder.path().string() + ": warning: only shot_v1_####.exr of the folder is read, not "
+                                             "shot_v2_####.exr (name a pattern to choose)"});
+    std::filesystem::remove(folder / "shot_v2_0001.exr");
+    Diagnostics none;
+    open_sequence(folder.path().string(), none);
+    EXPECT_TRUE(none.all().empty());
 }
 
 TEST(Sequence, RefusesTwoFilesOfOneNumberUnlessThePatternSaysWhich) {
@@ -187,6 +206,19 @@ TEST(CaptureDocument, ListsAllItsFaults) {
                                 "\"cuts\": [ 1, \"2\" ],\n"
                                 "  \"profil\": \"blender\" }"),
               expected);
+}
+
+TEST(CaptureDocument, RefusesDecodingsThatMakeAllValuesOne) {
+    const auto faults_with = [](const std::string& role, const std::string& keys) {
+        const Lines lines = faults_of_capture(
+            R"({"aftershade": 1, "frames": "a.exr", "channels": {")" + role + R"(": {"channels": [)" +
+            (role == "depth" ? R"("Z")" : R"("u", "v")") + "], " + keys + "}}}");
+        return lines.size() == 1 ? lines[0] : std::to_string(lines.size());
+    };
+    EXPECT_NE(faults_with("depth", R"("scale": 0)").find("'scale' of 0"), std::string::npos);
+    EXPECT_NE(faults_with("velocity", R"("scale": [1, 0])").find("'scale' of 0"), std::string::npos);
+    for (const char* keys : {R"("reversed": true)", R"("reversed": true, "encoding": "inverse")"})
+        EXPECT_NE(faults_with("depth", keys).find("z_buffer or normalized"), std::string::npos) << keys;
 }
 
 TEST(CaptureDocument, NeedsFrames) {

@@ -202,5 +202,28 @@ TEST(StoredColors, OfChangedChannelsAreTheFilesOwn) {
         EXPECT_NEAR(channel.image.floats()[0], expected.at(channel.name), 1e-6) << channel.name;
 }
 
+TEST(StoredColors, WarnOfNamesOfOpenImageIOThatAreNotKnown) {
+    for (const char* name : {"Filmic Log", "AgX Base sRGB"}) {
+        const Read read = read_with({{"oiio:ColorSpace", name}});
+        EXPECT_EQ(read.pixel[0], 0.4f);
+        EXPECT_EQ(read.warnings,
+                  "oiio:ColorSpace is '" + std::string(name) +
+                      "', which is not a known colour space; the numbers are assumed to be Rec. 709 "
+                      "(choose with --color-space, or \"color_space\" in capture.json)\n");
+    }
+}
+
+TEST(StoredColors, OfPrimariesThatSpanNothingAreAssumedAndSayIt) {
+    const float nan = std::nanf("");
+    for (const std::vector<float>& xy :
+         {std::vector<float>(8, 0), std::vector<float>(8, nan),
+          std::vector<float>{0.1f, 0.1f, 0.2f, 0.2f, 0.3f, 0.3f, 0.3127f, 0.3290f}}) {
+        const Read read = read_with({{"chromaticities", xy}});
+        EXPECT_EQ(read.pixel[0], 0.4f);
+        EXPECT_EQ(read.header.stored_colors.text(), "rec709 (assumed)");
+        EXPECT_NE(read.warnings.find("chromaticities is '"), std::string::npos) << read.warnings;
+    }
+}
+
 }  // namespace
 }  // namespace aftershade::test

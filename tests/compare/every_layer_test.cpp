@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
@@ -297,6 +298,59 @@ TEST_F(EveryLayer, WithEqualNumbersIsNotTheSameInOtherPrimariesOrPixels) {
         << compared().warnings.at(0);
     write_tiles(folder_ / "t.exr", Imf::ONE_LEVEL, {{"aspect", 2.0f}});
     EXPECT_EQ(compared().warnings, Texts{"another pixel aspect: 1 in the reference, 2 in the test image"});
+}
+
+TEST_F(EveryLayer, OfEqualNumbersIsNotTheSameWhereAnAttributeNamesAnotherSpace) {
+    const auto write_with = [&](const char* name, const std::map<std::string, std::string>& texts) {
+        Samples samples(Part{"", "", {{"R", {0.5f}}, {"G", {0.25f}}, {"B", {0.125f}}}});
+        for (const auto& [key, text] : texts) samples.header.insert(key, Imf::StringAttribute(text));
+        Imf::OutputFile file((folder_ / name).string().c_str(), samples.header);
+        file.setFrameBuffer(samples.frame);
+        file.writePixels(kHeight);
+    };
+    write_with("r.exr", {{"colorInteropID", "lin_rec709_scene"}});
+    for (const auto& [key, text] : std::map<std::string, std::string>{{"colorInteropID", "lin_ap1_scene"},
+                                                                      {"colorInteropId", "srgb_rec709_scene"},
+                                                                      {"oiio:ColorSpace", "AgX Base sRGB"}}) {
+        write_with("t.exr", {{key, text}});
+        const Comparison comparison = compared();
+        EXPECT_EQ(comparison.verdict, Verdict::warning) << text;
+        ASSERT_EQ(comparison.warnings.size(), 1u) << text;
+        EXPECT_EQ(comparison.warnings[0].find("the same numbers are other colours: rec709 in the reference"),
+                  0u)
+            << comparison.warnings[0];
+    }
+    // Other words for the same.
+    for (const char* space : {"lin_rec709", "Linear Rec.709 (sRGB)", "scene_linear"}) {
+        write_with("t.exr", {{"oiio:ColorSpace", space}});
+        EXPECT_EQ(compared().verdict, Verdict::same) << space;
+    }
+    write_with("r.exr", {{"colorInteropID", "srgb_rec709_display"}}),
+        write_with("t.exr", {{"oiio:ColorSpace", "sRGB"}});
+    EXPECT_EQ(compared().verdict, Verdict::same);
+}
+
+TEST_F(EveryLayer, OfEqualNumbersIsNotTheSameWhereViewsChangePlaces) {
+    const PartChannels left = {{"R", {1}}, {"G", {1}}, {"B", {1}}},
+                       right = {{"R", {2}}, {"G", {2}}, {"B", {2}}};
+    write("r.exr", {{"a", "left", left}, {"b", "right", right}});
+    write("t.exr", {{"a", "left", left}, {"b", "right", right}});
+    EXPECT_EQ(compared().verdict, Verdict::same);
+    write("t.exr", {{"a", "right", left}, {"b", "left", right}});
+    EXPECT_EQ(compared().verdict, Verdict::warning);
+    const auto write_views = [&](const char* name, const Imf::StringVector& views) {
+        Samples samples(Part{"", "", left});
+        Imf::addMultiView(samples.header, views);
+        Imf::OutputFile file((folder_ / name).string().c_str(), samples.header);
+        file.setFrameBuffer(samples.frame);
+        file.writePixels(kHeight);
+    };
+    write_views("r.exr", {"left", "right"}), write_views("t.exr", {"right", "left"});
+    const Comparison comparison = compared();
+    EXPECT_EQ(comparison.verdict, Verdict::warning);
+    ASSERT_EQ(comparison.warnings.size(), 1u);
+    EXPECT_NE(comparison.warnings[0].find("'left' in the reference, 'right' in the test image"),
+              std::string::npos);
 }
 
 }  // namespace

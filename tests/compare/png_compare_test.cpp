@@ -81,5 +81,16 @@ TEST_F(ComparePng, ByAMaskTakesTheMasksNumbersAsTheyAreStored) {
     EXPECT_EQ(compare_files(folder_ / "r.png", folder_ / "t.png", rules).notes.size(), 0u);
 }
 
+TEST_F(ComparePng, OfEqualSamplesIsNotTheSameWherePixelsHaveAnotherShape) {
+    write("r.png", light_);
+    write("t.png", light_, "pHYs", png_number(1000) + png_number(2000) + '\0');
+    const Comparison comparison = compared();
+    EXPECT_EQ(comparison.verdict, Verdict::warning);
+    ASSERT_EQ(comparison.warnings.size(), 1u);
+    EXPECT_EQ(comparison.warnings[0], "another pixel aspect: 1 in the reference, 2 in the test image");
+    write("t.png", light_, "pHYs", png_number(2835) + png_number(2835) + '\1');  // a resolution alone
+    EXPECT_EQ(compared().verdict, Verdict::same);
+}
+
 }  // namespace
 }  // namespace aftershade

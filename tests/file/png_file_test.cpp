@@ -1,6 +1,7 @@
 #include "framework/file/png_file.h"
 
 #include "tests/file/image_files.h"
+#include "tests/file/png_chunks.h"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@ namespace aftershade {
 namespace {
 
 namespace fs = std::filesystem;
+using test::png_number;
 using test::TemporaryFolder;
 
 TEST(PngFile, KeepsEveryByteForOneThreeAndFourChannels) {
@@ -162,6 +164,35 @@ TEST(PngFile, CarriesTextWithoutAChangeOfItsPixels) {
     EXPECT_EQ(read_png_text(folder / "none.png", "Title"), std::nullopt);
     EXPECT_TRUE(
         std::ranges::equal(read_png(folder / "text.png").floats(), read_png(folder / "plain.png").floats()));
+}
+
+TEST(PngFile, OfAPaletteIsRefusedWhereAPixelHasAColourThatThePaletteLacks) {
+    const TemporaryFolder folder;
+    const auto chunk = [](const std::string& type, const std::string& data) {
+        const std::string checked = type + data;
+        return png_number(std::uint32_t(data.size())) + checked +
+               png_number(std::uint32_t(
+                   crc32(0, reinterpret_cast<const Bytef*>(checked.data()), uInt(checked.size()))));
+    };
+    const auto write = [&](char last) {
+        const std::string rows = std::string("\0\0\1", 3) + last;  // a filter and three pixels
+        std::string packed(64, '\0');
+        uLongf size = packed.size();
+        compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(rows.data()),
+                 uLong(rows.size()));
+        test::write_text(folder / "p.png",
+                   "\x89PNG\r\n\x1a\n" +
+                       chunk("IHDR", png_number(3) + png_number(1) + std::string("\x8\x3\0\0\0", 5)) +
+                       chunk("PLTE", std::string("\x10\x20\x30\x40\x50\x60", 6)) +
+                       chunk("IDAT", packed.substr(0, size)) + chunk("IEND", ""));
+    };
+    write(1);
+    const Image image = read_png(folder / "p.png");
+    EXPECT_EQ(image.at(0, 0, 2), 0x30 / 255.0f);
+    EXPECT_EQ(image.at(2, 0, 0), 0x40 / 255.0f);
+    write(2);
+    EXPECT_NE(test::error_of(ExitCode::capture, [&] { read_png(folder / "p.png"); }).find("palette"),
+              std::string::npos);
 }
 
 }  // namespace

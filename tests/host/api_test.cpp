@@ -1,5 +1,6 @@
 // The public API over small frames: what the program writes is what a library's user gets.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -83,6 +84,36 @@ TEST(HostApi, ArraysGiveTheBitsOfFiles) {
         arrays.set_image(role, {image.data(), image.type(), image.width(), image.height(), image.channels()});
     }
     EXPECT_TRUE(same_bits(look.render(arrays).image("color"), look.render(read).image("color")));
+}
+
+TEST(HostApi, ArraysOfPixelsThatAreNotSquareGiveTheBitsOfFiles) {
+    const TemporaryFolder folder;
+    const Image pixels = small_capture().image("color");
+    const int width = pixels.width(), height = pixels.height();
+    aftershade::Image stored(width, height, 4);
+    std::copy_n(static_cast<const float*>(pixels.data()), stored.floats().size(), stored.floats().begin());
+    std::vector<aftershade::ExrOutputChannel> channels;
+    for (int c = 0; c < 4; ++c)
+        channels.push_back({std::string(1, "RGBA"[c]), aftershade::PixelType::float32, &stored, c});
+    aftershade::ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, width - 1, height - 1};
+    options.pixel_aspect = 2;
+    aftershade::write_exr(folder.path() / "a.exr", channels, options);
+    Host host(on_software());
+    Look look = host.parse_look(R"({"aftershade": 1, "steps": [{"effect": "bloom"}]})");
+    const Capture read = look.read(folder.path() / "a.exr");
+    EXPECT_EQ(read.pixel_aspect(), 2);
+    Capture arrays(width, height);
+    arrays.set_image("color", {pixels.data(), pixels.type(), width, height, 4});
+    const Result square = look.render(arrays);
+    arrays.set_pixel_aspect(2);
+    const Result result = look.render(arrays);
+    EXPECT_TRUE(same_bits(result.image("color"), look.render(read).image("color")));
+    EXPECT_FALSE(same_bits(result.image("color"), square.image("color")));
+    result.write(folder.path() / "o.exr", {.roles = {"color"}});
+    EXPECT_EQ(aftershade::ExrFile(folder.path() / "o.exr").parts()[0].pixel_aspect, 2);
+    for (const double aspect : {0.0, -1.0, 101.0, std::nan("")})
+        EXPECT_THROW(arrays.set_pixel_aspect(aspect), Error) << aspect;
 }
 
 TEST(HostApi, WritesOverNoDocumentOfItsOwnLookAndKnowsNoOtherHosts) {

@@ -179,6 +179,17 @@ def test_a_sequence_has_the_color_space_of_its_first_frame(host, tmp_path):
     assert any("converted to these" in note for note in capture.notes), capture.notes
 
 
+def test_pixels_of_arrays_are_square_unless_their_shape_is_set(host):
+    look = aftershade.Look({"aftershade": 1, "steps": [{"effect": "bloom"}]}, host=host)
+    capture = aftershade.Capture(frame_arrays())
+    assert capture.pixel_aspect == 1
+    square = np.array(look.render(capture)["color"])
+    capture.pixel_aspect = 2
+    assert not np.array_equal(square, look.render(capture)["color"])
+    with pytest.raises(aftershade.UsageError):
+        capture.pixel_aspect = 0
+
+
 def test_a_sequence_says_which_role_a_frame_lacks(host, tmp_path):
     write_frame(host, tmp_path / "f_0001.exr", 1)
     write_frame(host, tmp_path / "f_0002.exr", 2, roles=("color",))

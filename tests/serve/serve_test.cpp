@@ -263,6 +263,7 @@ TEST_F(Serve, GivesPngsThatAreSrgbWhereTheyArePictures) {
     };
     EXPECT_TRUE(is_srgb("final"));
     EXPECT_TRUE(is_srgb("before"));
+    EXPECT_TRUE(is_srgb("role:color"));
     EXPECT_FALSE(is_srgb("role:depth")) << "false colours";
     write_text(folder_ / "shown.png", get("/api/picture?frame=1").body);
     EXPECT_EQ(read_png(folder_ / "shown.png").width(), 64) << "whose chunks are whole";

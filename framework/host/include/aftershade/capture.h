@@ -111,6 +111,11 @@ public:
     /// above 65536 px, or the data window has another size than the images.
     void set_windows(const Window& data, const Window& display);
 
+    /// Width of a pixel over its height, which round shapes are measured by. 1 at first; of a file its own.
+    double pixel_aspect() const noexcept;
+    /// Throws Error(usage) for what is not from 0.01 to 100.
+    void set_pixel_aspect(double aspect);
+
     /// Size of the frame's pixels relative to those that values in px refer to: 0.5 for a frame at half the
     /// size. 1 at first; of a file 1 / CaptureOptions::scale_divisor.
     double scale() const noexcept;

@@ -1,11 +1,17 @@
-#include "framework/capture/stored_colors.h"
+#include "framework/file/stored_colors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 
 namespace aftershade {
 
@@ -27,6 +33,20 @@ Statement interop_id(const ExrMetadata& part) {
     return {};
 }
 
+/// Whether there is light of every colour: three primaries apart from one another, and a white with light.
+bool span_colors(const Chromaticities& xy) {
+    const auto is_finite = [](float value) { return std::isfinite(value); };
+    const float area = (xy[2] - xy[0]) * (xy[5] - xy[1]) - (xy[4] - xy[0]) * (xy[3] - xy[1]);
+    return std::ranges::all_of(xy, is_finite) && xy[7] > 0 && std::abs(area) > 1e-6f;
+}
+
+/// "linear" and the like name no primaries, and light is what a file without the attribute has.
+bool names_no_primaries(const std::string& space) {
+    constexpr std::array<std::string_view, 6> kNames = {"",    "linear",  "scene_linear",
+                                                        "lin", "default", "unknown"};
+    return std::ranges::find(kNames, lower_case(space)) != kNames.end();
+}
+
 std::vector<Statement> statements_of(const ExrMetadata& metadata, const ExrMetadata& part) {
     std::vector<Statement> all;
     if (Statement id = interop_id(part); !id.value.empty()) all.push_back(std::move(id));
@@ -35,12 +55,12 @@ std::vector<Statement> statements_of(const ExrMetadata& metadata, const ExrMetad
     if (metadata.value("chromaticities")) {
         const ColorEncoding encoding{stored_primaries(metadata), ColorEncoding::Curve::linear, 1};
         const std::string name = name_of_primaries(encoding.primaries);
-        all.push_back({"chromaticities", name.empty() ? "primaries without a name" : name, encoding});
+        if (span_colors(encoding.primaries))
+            all.push_back({"chromaticities", name.empty() ? "primaries without a name" : name, encoding});
+        else all.push_back({"chromaticities", fmt::format("{:.4g}", fmt::join(encoding.primaries, " ")), {}});
     }
-    // "linear" and "scene_linear" name no primaries, and light is what a file without the attribute has.
-    if (const auto space = metadata.text("oiio:ColorSpace"))
-        if (const auto encoding = find_color_encoding(*space))
-            all.push_back({"oiio:ColorSpace", *space, encoding});
+    if (const auto space = metadata.text("oiio:ColorSpace"); space && !names_no_primaries(*space))
+        all.push_back({"oiio:ColorSpace", *space, find_color_encoding(*space)});
     return all;
 }
 
@@ -78,6 +98,16 @@ std::string StoredColors::text() const {
     return space + " (" + (is_known() ? source : "assumed") + ")";
 }
 
+std::string StoredColors::meaning() const {
+    if (!unknown.empty()) return unknown;
+    if (!encoding.is_light()) {
+        const std::string id = encoding.is_color() ? color_interop_id(encoding) : "";
+        return id.empty() ? name : id;
+    }
+    const std::string known = name_of_primaries(encoding.primaries);
+    return known.empty() ? fmt::format("primaries {:.4f}", fmt::join(encoding.primaries, " ")) : known;
+}
+
 StoredColors stored_colors(const ExrMetadata& metadata, const ExrMetadata& part) {
     StoredColors colors;
     colors.name = "rec709";
@@ -92,6 +122,9 @@ StoredColors stored_colors(const ExrMetadata& metadata, const ExrMetadata& part)
         colors.source = counts->attribute;
     }
     for (const Statement& other : all) {
+        if (!other.encoding && !colors.is_known() && colors.unknown.empty() &&
+            !names_no_primaries(other.value))
+            colors.unknown = other.value;
         if (!other.encoding)
             colors.warnings.push_back(said(other) + ", which is not a known colour space; " +
                                       what_counts(colors) + kRemedy);

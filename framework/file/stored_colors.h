@@ -11,14 +11,18 @@ namespace aftershade {
 
 struct StoredColors {
     ColorEncoding encoding;
-    std::string name;    ///< "acescg", "srgb_rec709_scene"; "" for primaries without a name
-    std::string source;  ///< "colorInteropID"; "" where the space is assumed
+    std::string name;                   ///< "acescg", "srgb_rec709_scene"; "" for primaries without a name
+    std::string source;                 ///< "colorInteropID"; "" where the space is assumed
     bool is_declared = false;           ///< by the user or the profile, whatever the file says
     std::vector<std::string> warnings;  ///< on what the file says of its space, in whole sentences
+    std::string unknown{};  ///< what the file says instead of a known space, where nothing else counts
 
     bool is_known() const { return !source.empty(); }
     /// "acescg (colorInteropID)", "rec709 (assumed)".
     std::string text() const;
+    /// One text for all names of one encoding: "acescg", "srgb_rec709_scene", "primaries 0.7000 0.3000 ...".
+    /// Equal numbers in files with other texts are other colours.
+    std::string meaning() const;
 };
 
 /// By the attributes `colorInteropID`, `acesImageContainerFlag`, `chromaticities` and `oiio:ColorSpace`, the
