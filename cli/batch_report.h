@@ -17,7 +17,7 @@ struct BatchSummary {
     ExitCode exit_code = ExitCode::done;
     std::string renderer{};  ///< "egl-software: llvmpipe (...), 4.5 ..."; "" where nothing was drawn here
     std::string hardware_fault{};  ///< why backend auto took software; "" where it did not
-    std::string error{};  ///< the message of what ended the run; "" where nothing did
+    std::string error{};           ///< the message of what ended the run; "" where nothing did
 };
 
 /// The outcomes of a run in this process; frames without one are "not run" unless they are current.

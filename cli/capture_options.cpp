@@ -2,10 +2,10 @@
 
 #include "cli/slip_hints.h"
 
-#include <sstream>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 
 #include "framework/capture/capture.h"
 #include "framework/capture/capture_grammar.h"
@@ -93,9 +93,11 @@ std::vector<Profile> load_profiles(const std::vector<std::string>& profile_paths
 std::optional<Sequence> find_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles,
                                       Diagnostics& diagnostics) {
     std::error_code unreadable;
-    if (options.capture.find('*') != std::string::npos && !std::filesystem::exists(options.capture, unreadable)) {
-        diagnostics.error({options.capture}, "a sequence is written with # for each digit of its frames, not with *: '" +
-                                                 frame_pattern(options.capture) + "'");
+    if (options.capture.find('*') != std::string::npos &&
+        !std::filesystem::exists(options.capture, unreadable)) {
+        diagnostics.error({options.capture},
+                          "a sequence is written with # for each digit of its frames, not with *: '" +
+                              frame_pattern(options.capture) + "'");
         return std::nullopt;
     }
     std::optional<Sequence> sequence;

@@ -16,12 +16,9 @@ namespace aftershade::cli {
 namespace {
 
 nlohmann::ordered_json json_of(const VelocitySettings& settings) {
-    return {{"delta", settings.delta},
-            {"y_axis", settings.y_axis},
-            {"unit", settings.unit},
-            {"scale", settings.scale},
-            {"bias", settings.bias},
-            {"exchange_channels", settings.exchange_channels}};
+    return {{"delta", settings.delta}, {"y_axis", settings.y_axis},
+            {"unit", settings.unit},   {"scale", settings.scale},
+            {"bias", settings.bias},   {"exchange_channels", settings.exchange_channels}};
 }
 
 nlohmann::ordered_json json_of(const std::string& role, const VelocityCheck& check) {

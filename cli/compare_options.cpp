@@ -25,7 +25,8 @@ void add_tolerance(CLI::App& app, const std::string& word, const char* verdict, 
               : "Largest difference of a pixel without a warning (default: as --fail)");
     add(word + "relative", options.relative,
         fails ? "Let a difference pass that is at most this part of its value (default: 0)"
-              : "Cause no warning for a difference that is at most this part of its value (default: as --failrelative)");
+              : "Cause no warning for a difference that is at most this part of its value (default: as "
+                "--failrelative)");
     add(word + "percent", options.percent, "Percentage of a layer's pixels that may exceed it (default: 0)");
     add("hard" + word, options.hard, "Largest difference of any pixel (default: inf)");
     add(std::string("allow") + (fails ? "failures" : "warnings"), options.allowed,

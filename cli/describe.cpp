@@ -69,8 +69,10 @@ ExitCode describe(const DescribeOptions& options) {
         write_plot(profile_of(*manifest, diagnostics), options.plot);
         return ExitCode::done;
     }
-    fmt::print("{}{}", options.json ? describe_json(*manifest) : printable_lines(describe_text(*manifest, options.verbose)),
-               options.json ? "\n" : "");
+    fmt::print(
+        "{}{}",
+        options.json ? describe_json(*manifest) : printable_lines(describe_text(*manifest, options.verbose)),
+        options.json ? "\n" : "");
     return ExitCode::done;
 }
 

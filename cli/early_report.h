@@ -7,8 +7,8 @@
 
 namespace aftershade::cli {
 
-/// Removes the report of an earlier run, which would pass for the report of this one. Other files stay: the checks of
-/// the outputs refuse them.
+/// Removes the report of an earlier run, which would pass for the report of this one. Other files stay: the
+/// checks of the outputs refuse them.
 void remove_old_report(const RunArguments& options);
 
 /// A report without frames, of a run that ended before its first one; keeps a file that is there.

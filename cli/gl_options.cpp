@@ -8,7 +8,8 @@
 namespace aftershade::cli {
 
 std::string backend_help(const std::string& by_default) {
-    return "GL backend, one of " + gpu::backend_names() + " (default: $AFTERSHADE_BACKEND, else " + by_default + ")";
+    return "GL backend, one of " + gpu::backend_names() + " (default: $AFTERSHADE_BACKEND, else " +
+           by_default + ")";
 }
 
 void add_backend_option(CLI::App& app, std::string& backend) {
@@ -22,8 +23,7 @@ gpu::Backend chosen_backend(const std::string& option) {
     const auto backend = gpu::parse_backend(name);
     if (!backend)
         throw Error(ExitCode::usage, std::string(from_environment ? "AFTERSHADE_BACKEND" : "--backend") +
-                                         ": '" + name + "' is not one of " +
-                                         gpu::backend_names());
+                                         ": '" + name + "' is not one of " + gpu::backend_names());
     return *backend;
 }
 

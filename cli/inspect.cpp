@@ -189,7 +189,8 @@ void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
         const Capture capture = reader.read(inspection.capture->frame, roles);
         note_averaged_depth(capture.images.at(depth), inspection);
         for (const std::string& warning : capture.header.warnings)
-            if (std::ranges::find(inspection.capture->warnings, warning) == inspection.capture->warnings.end())
+            if (std::ranges::find(inspection.capture->warnings, warning) ==
+                inspection.capture->warnings.end())
                 add_warning(warning, inspection);
         if (position.empty() || is_of_position(*inspection.capture, depth, position)) return;
         const Image& positions = capture.images.at(position);

@@ -42,7 +42,8 @@ std::string layout_text(const ExrPart& part) {
         text += fmt::format("data window {}, display window {}", window_text(part.data_window),
                             window_text(part.display_window));
     if (part.pixel_aspect == 1) return text;
-    const Window square = stretched(part.display_window, part.display_window, square_pixels(part.pixel_aspect));
+    const Window square =
+        stretched(part.display_window, part.display_window, square_pixels(part.pixel_aspect));
     return text + fmt::format(", pixel aspect {} ({} x {} square px)", part.pixel_aspect, square.width(),
                               square.height());
 }
@@ -62,7 +63,8 @@ std::string part_lines(const std::vector<InspectedPart>& parts) {
         ++like->parts, like->channels += part.channels.size();
         for (const InspectedChannel& channel : part.channels)
             if (!channel.statistics)
-                faults += fmt::format("  {}: {}\n", printable(channel.channel.name), printable(channel.reason));
+                faults +=
+                    fmt::format("  {}: {}\n", printable(channel.channel.name), printable(channel.reason));
     }
     std::string text;
     for (const Like& like : likes)

@@ -30,7 +30,7 @@ struct Inspection {
     std::string no_profile_reason;         ///< without the file's name
     std::string no_profile_message;        ///< with it
     ExitCode no_profile_code = ExitCode::capture;
-    std::string depth_kind;  ///< "planar, fits position to 0.02 %"; "" where no position shows it
+    std::string depth_kind;             ///< "planar, fits position to 0.02 %"; "" where no position shows it
     std::vector<std::string> warnings;  ///< of values that are wrong, in whole sentences
     std::optional<std::array<int, 2>> pixel;  ///< that was requested, in the file's coordinates
     std::vector<CryptomatteLayer> cryptomattes;
@@ -44,8 +44,8 @@ struct Inspection {
 };
 
 std::string text_of(const Inspection& inspection);
-/// {file, parts, pixel, profile, layer, layers, layer_count, notes, warnings, roles, depth_kind, missing, camera,
-/// lights, cryptomattes}, indented, without a line end.
+/// {file, parts, pixel, profile, layer, layers, layer_count, notes, warnings, roles, depth_kind, missing,
+/// camera, lights, cryptomattes}, indented, without a line end.
 std::string json_of(const Inspection& inspection);
 
 }  // namespace aftershade::cli

@@ -247,9 +247,9 @@ TEST(Architecture, NoLinePointsOutsideTheRepository) {
     const std::string beside =
         "../"
         "shared";
-    const std::set<std::string> may_look_beside = {"scripts/check-all", "scripts/check-damaged", "scripts/check-distributions",
-                                                   "scripts/dof/family.py", "scripts/quality-bokeh",
-                                                   "tests/real_captures.h"};
+    const std::set<std::string> may_look_beside = {"scripts/check-all",           "scripts/check-damaged",
+                                                   "scripts/check-distributions", "scripts/dof/family.py",
+                                                   "scripts/quality-bokeh",       "tests/real_captures.h"};
     // The page and the papers' numbers that the first authors worked from, and notes that only they had.
     const std::regex outside(
         "DESIGN"

@@ -24,7 +24,7 @@ inline std::string parameter_name(const testing::TestParamInfo<Backend>& info) {
 }
 
 /// Ends the test with the reason where `backend` is not usable. Mesa has no OSMesa from 25.1 on.
-#define SKIP_WITHOUT(backend)                                                                              \
+#define SKIP_WITHOUT(backend) \
     if (const std::string reason = aftershade::gpu::why_not(backend); !reason.empty()) GTEST_SKIP() << reason
 
 /// A test on both software backends, each of which draws the same bits.

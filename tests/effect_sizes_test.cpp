@@ -1,4 +1,5 @@
-// Every effect at the ends of what a frame may be: a few pixels, the widest side, and alphas that hold no digits.
+// Every effect at the ends of what a frame may be: a few pixels, the widest side, and alphas that hold no
+// digits.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -87,8 +88,8 @@ TEST_P(EffectAtTheEnds, MakesNoFirefliesOfAlphasThatHoldNoDigits) {
 }
 
 TEST(EffectsOfAlpha, AGradeAtTheLeastAlphasIsThatOfLightWithoutCoverage) {
-    const std::string grade =
-        look_of_step("color_grade", R"("exposure": 1, "contrast": 1.2, "saturation": 0.5, "offset": [0.1, 0.1, 0.1])");
+    const std::string grade = look_of_step(
+        "color_grade", R"("exposure": 1, "contrast": 1.2, "saturation": 0.5, "offset": [0.1, 0.1, 0.1])");
     const auto graded = [&](float alpha) {
         Capture capture = make_capture({.width = 4, .height = 4});
         Image& color = capture.images.at("color");

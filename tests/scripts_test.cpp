@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 const fs::path kScriptsRoot = AFTERSHADE_SOURCE_DIR;
 
 bool is_command(const fs::path& path) {
-    return fs::is_regular_file(path) && (fs::status(path).permissions() & fs::perms::owner_exec) != fs::perms::none;
+    return fs::is_regular_file(path) &&
+           (fs::status(path).permissions() & fs::perms::owner_exec) != fs::perms::none;
 }
 
 struct Told {
@@ -52,7 +53,8 @@ TEST(Scripts, PrintTheirUsageAndDoNothingElse) {
 
 TEST(Scripts, AreThereWhereAPageNamesThem) {
     const std::regex named(R"(\bscripts/([a-z0-9-]+)(?![\w./-]))");
-    std::set<fs::path> pages = {kScriptsRoot / "README.md", kScriptsRoot / "CONTRIBUTING.md", kScriptsRoot / "SECURITY.md"};
+    std::set<fs::path> pages = {kScriptsRoot / "README.md", kScriptsRoot / "CONTRIBUTING.md",
+                                kScriptsRoot / "SECURITY.md"};
     for (const auto& entry : fs::recursive_directory_iterator(kScriptsRoot / "docs"))
         if (entry.path().extension() == ".md") pages.insert(entry.path());
     int found = 0;
@@ -62,7 +64,8 @@ TEST(Scripts, AreThereWhereAPageNamesThem) {
         const std::string words = text.str();
         for (std::sregex_iterator match(words.begin(), words.end(), named), end; match != end; ++match) {
             ++found;
-            EXPECT_TRUE(fs::exists(kScriptsRoot / "scripts" / (*match)[1].str())) << page << " names scripts/" << (*match)[1];
+            EXPECT_TRUE(fs::exists(kScriptsRoot / "scripts" / (*match)[1].str()))
+                << page << " names scripts/" << (*match)[1];
         }
     }
     EXPECT_GT(found, 40);

@@ -46,7 +46,8 @@ TEST(BokehCoc, MatchesTheThinLensTableToATenthOfAPercent) {
 
 TEST(BokehCoc, OfAPinholeLensDividesByTheFocusDistanceAlone) {
     Capture capture = make_capture({.width = 1920, .height = 2});
-    LookRunner runner(look(R"("f_number": 2, "lens_model": "pinhole")"), gpu::Backend::software, {"bokeh.coc"});
+    LookRunner runner(look(R"("f_number": 2, "lens_model": "pinhole")"), gpu::Backend::software,
+                      {"bokeh.coc"});
     const double radius_px = 0.5 * 25 * 50 / 2000.0 * 1920 / 36;
     EXPECT_NEAR(runner.run(capture).taps.at("bokeh.coc").at(0, 0, 0), radius_px, 0.001 * radius_px);
 }
@@ -108,10 +109,8 @@ TEST(Bokeh, KeepsABulbRoundBesideANearPoleThatLayersHaveTheRestBehind) {
     constexpr int size = 65, middle = 32, lamp_x = middle + 3;
     constexpr double radius_px = 16;
     constexpr float far_m = 2 * kApertureFocusM;  // the CoC radius is half of that at infinity
-    Capture capture = make_capture({.width = size,
-                                    .height = size,
-                                    .background_depth_m = far_m,
-                                    .points = {{lamp_x, middle, 300}}});
+    Capture capture = make_capture(
+        {.width = size, .height = size, .background_depth_m = far_m, .points = {{lamp_x, middle, 300}}});
     Image behind(size, size, 4), behind_m(size, size, 1);
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {

@@ -148,8 +148,7 @@ TEST(BokehDisk, DissolvesAWireOverWhatALayerHasBehindIt) {
     constexpr double radius_px = 16;
     constexpr float wire = 0.05f;
     const auto stripe = [](int y) { return y / 8 % 2 == 0 ? 0.8f : 0.2f; };
-    Capture capture =
-        make_capture({.width = width, .height = height, .background_depth_m = kApertureFocusM});
+    Capture capture = make_capture({.width = width, .height = height, .background_depth_m = kApertureFocusM});
     Image color(width, height, 4), depth(width, height, 1);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "framework/scene/renderer.h"
+#include "tests/backends.h"
 #include "tests/pipeline/effect_fixture.h"
 #include "tests/scene/scene_text.h"
-#include "tests/backends.h"
 
 namespace aftershade::test::sss_combine {
 namespace {

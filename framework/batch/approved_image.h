@@ -21,8 +21,8 @@ struct GoldenEnvironment {
     std::string version;   ///< GL_VERSION
     std::string cpu;       ///< "model name" of /proc/cpuinfo
     bool software = false;
-    /// The processor instructions that change bits of a software renderer, as in "x86-64 with FMA"; "" in older
-    /// sidecars.
+    /// The processor instructions that change bits of a software renderer, as in "x86-64 with FMA"; "" in
+    /// older sidecars.
     std::string instructions = {};
 
     std::string mesa() const;  ///< "22.3.6"; "" of other drivers
@@ -49,7 +49,7 @@ struct GoldenSources {
 /// What made an approved image. Older ones have renderer, version, cpu and backend only.
 struct GoldenSidecar {
     GoldenEnvironment environment;
-    std::string command;        ///< that approved it
+    std::string command;  ///< that approved it
     GoldenSources sources;
     std::string image_hash;     ///< of the image file's bytes: a sidecar of another image says nothing
     std::string approver = {};  ///< who approved it; "" where no one is named

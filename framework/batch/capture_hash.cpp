@@ -46,7 +46,8 @@ std::set<fs::path> files_of(const GoldenCase& test) {
     if (const auto document = capture_document(test.capture.string())) files.insert(*document);
     const auto chosen = parse_frame_range(test.frames);
     for (const int frame : chosen ? *chosen : sequence->frames)
-        for (int away = -kMostFrameOffset; away <= kMostFrameOffset; ++away) add_frame(*sequence, frame + away, files);
+        for (int away = -kMostFrameOffset; away <= kMostFrameOffset; ++away)
+            add_frame(*sequence, frame + away, files);
     if (!sequence->whole.empty()) add_frame(*sequence, sequence->whole.front(), files);  // it decides for all
     add_profiles(*sequence, files);
     return files;

@@ -58,9 +58,9 @@ struct GoldenCase {
 /// "lamps.color" and 1: "lamps.color.0001".
 std::string golden_image_name(const std::string& image_stem, int frame);
 
-/// Keys of compare's flags: fail, fail_relative, fail_percent, hard_fail, allow_failures, fail_flip, fail_ssim; the same
-/// with `warn`; nan_equal, forgive_shift, forgive_blur, layers. Without any `warn` key only a failing image
-/// is reported.
+/// Keys of compare's flags: fail, fail_relative, fail_percent, hard_fail, allow_failures, fail_flip,
+/// fail_ssim; the same with `warn`; nan_equal, forgive_shift, forgive_blur, layers. Without any `warn` key
+/// only a failing image is reported.
 CompareRules parse_golden_tolerance(const Node& node, Diagnostics& diagnostics);
 
 /// A tolerance that has been checked, without its areas.

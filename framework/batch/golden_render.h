@@ -12,7 +12,7 @@
 namespace aftershade {
 
 struct GoldenRenderOptions {
-    std::string backend = "software";         ///< as `--backend` takes it
+    std::string backend = "software";       ///< as `--backend` takes it
     std::vector<std::string> effect_paths;  ///< folders, the first wins
     std::vector<std::string> plugin_paths;
     std::chrono::milliseconds timeout{600'000};  ///< of one case, wall time

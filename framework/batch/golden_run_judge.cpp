@@ -61,8 +61,8 @@ void find_changes(const GoldenSidecar& approved, const GoldenSources& sources,
         return !of.look.empty() && !of.capture.empty() && !of.program.empty();
     };
     result.only_machine_changed = result.changes.empty() && is_known(sources) && is_known(approved.sources);
-    result.changes.push_back((result.only_machine_changed ? "only the machine differs: " : "the machine differs: ") +
-                             machine);
+    result.changes.push_back(
+        (result.only_machine_changed ? "only the machine differs: " : "the machine differs: ") + machine);
 }
 
 /// The image against one approved image.
@@ -86,8 +86,9 @@ void compare_with(const ApprovedImage& approved, const CompareRules& rules, cons
     if (result.exact_tier) {
         result.verdict = std::max(result.verdict, Verdict::warning);
         if (result.changes.empty())
-            result.reasons.push_back("bits differ although renderer, driver, CPU, look and effects are those of " +
-                                     approved.file.filename().string());
+            result.reasons.push_back(
+                "bits differ although renderer, driver, CPU, look and effects are those of " +
+                approved.file.filename().string());
     }
     if (result.verdict != Verdict::same)
         result.reasons.insert(result.reasons.end(), result.changes.begin(), result.changes.end());
@@ -210,7 +211,8 @@ RulesOrFault rules_or_fault(const GoldenCase& test, int frame) {
 }  // namespace
 
 bool has_equal_bits(const Comparison& comparison) {
-    return comparison.verdict <= Verdict::failure && comparison.faults.empty() && comparison.warnings.empty() &&
+    return comparison.verdict <= Verdict::failure && comparison.faults.empty() &&
+           comparison.warnings.empty() &&
            std::ranges::all_of(comparison.layers,
                                [](const LayerComparison& layer) { return layer.differences.bits_equal; });
 }

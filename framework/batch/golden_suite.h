@@ -20,7 +20,7 @@ struct GoldenSuite {
     std::vector<std::filesystem::path> documents;  ///< that were read
     /// That goldens may lie in, also where no case is left: that of the document, those of effects' cases.
     std::vector<std::filesystem::path> golden_folders;
-    std::vector<GoldenCase> cases;                 ///< those of the document, then those of effects by name
+    std::vector<GoldenCase> cases;  ///< those of the document, then those of effects by name
 
     /// That the document lies in.
     std::filesystem::path folder() const { return file.has_parent_path() ? file.parent_path() : "."; }

@@ -32,7 +32,7 @@ private:
 
     EffectRegistry effects_;
     std::filesystem::path glsl_folder_;
-    std::string plugins_;  // hashes of the libraries
+    std::string plugins_;                              // hashes of the libraries
     std::map<std::string, std::string> effect_texts_;  // by id
 };
 

@@ -336,8 +336,9 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
         // Without figures, so that a sequence says it once.
         if (has_negative(image))
             capture.header.warnings.push_back(
-                name + " is negative in places, and nothing is seen behind the camera: if the file stores -z, set "
-                       "\"scale\": -1 next to the role's channels in capture.json");
+                name +
+                " is negative in places, and nothing is seen behind the camera: if the file stores -z, set "
+                "\"scale\": -1 next to the role's channels in capture.json");
     }
     if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
     if (role.kind == RoleKind::light)

@@ -24,8 +24,8 @@ void CaptureReader::find_colors(OpenFrame& open) const {
         return stored_colors(source.file->merged().metadata, source.file->metadata_of(channel));
     };
     const auto color = open.roles.find(kColorRole);
-    const bool has_color = color != open.roles.end() && !(color->second.channels.empty() &&
-                                                          color->second.luminance.empty());
+    const bool has_color =
+        color != open.roles.end() && !(color->second.channels.empty() && color->second.luminance.empty());
     StoredColors& colors = header.stored_colors;
     const bool is_called_xyz =
         has_color && !color->second.channels.empty() && color->second.channels[0][0] == "X";

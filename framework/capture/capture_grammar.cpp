@@ -32,7 +32,9 @@ Form files_by_role() {
 
 Block cryptomatte_block() {
     return {.name = "cryptomatte",
-            .keys = {optional("layer", text(), "Which Cryptomatte; default: the one that has the named objects, and of several such that of objects."),
+            .keys = {optional("layer", text(),
+                              "Which Cryptomatte; default: the one that has the named objects, and of "
+                              "several such that of objects."),
                      optional("mask", grammar::list(text()),
                               "Names of objects; the role mask is their coverage.")}};
 }

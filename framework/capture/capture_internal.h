@@ -20,7 +20,7 @@ struct CaptureReader::RoleSource {
     FoundChannels channels;  // empty for luminance and Cryptomatte
     std::string luminance;   // the Y channel that stands for color
     bool from_cryptomatte = false;
-    StoredColors colors;     // of light
+    StoredColors colors;  // of light
 };
 
 struct CaptureReader::OpenFrame {

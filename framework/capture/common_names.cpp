@@ -57,10 +57,9 @@ std::string last_word(const std::string& layer) {
 /// By the last word of its name, such as "N" of "beauty.N": a usual one, or a role's.
 bool holds_data(const std::string& layer) {
     static const std::set<std::string> words = {
-        "n",      "normals", "ng",           "ns",        "normw",   "p",       "positions", "posw",
-        "pos",    "z",       "uv",           "st",        "tangent", "id",      "vector",    "vectors",
-        "motion", "mvec",    "motionvector", "motionvec", "forward", "backward",
-        "motionvectors"};
+        "n",      "normals", "ng",           "ns",        "normw",   "p",        "positions",    "posw",
+        "pos",    "z",       "uv",           "st",        "tangent", "id",       "vector",       "vectors",
+        "motion", "mvec",    "motionvector", "motionvec", "forward", "backward", "motionvectors"};
     static const std::set<std::string> last_words = {"normals", "vector", "vectors"};
     if (layer.empty()) return false;
     const std::string word = lower_case(layer.substr(layer.rfind('.') + 1));

@@ -41,7 +41,9 @@ public:
     const std::string& text() const { return text_; }
     std::string path(int frame) const;
     /// The file of `frame` has this name from now on, whose number is padded in another way.
-    void name_otherwise(int frame, std::string name) { other_names_.insert_or_assign(frame, std::move(name)); }
+    void name_otherwise(int frame, std::string name) {
+        other_names_.insert_or_assign(frame, std::move(name));
+    }
     /// The name with this text in the number's place.
     std::string with(std::string_view number) const;
     /// The frame number in `name` if the pattern fits it.

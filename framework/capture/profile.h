@@ -87,9 +87,8 @@ struct Profile {
     std::vector<std::string> detect_attributes;
     std::vector<std::string> detect_channels;  ///< ... or all of these channels show that the profile fits
     bool rewrites = false;  ///< also writes other producers' files again, whose attributes then say more
-    std::string color_space =
-        "auto";              ///< of the stored colours; auto: what the header says, else Rec. 709
-    std::string lens_model;  ///< "thin" or "pinhole"; "" where not known
+    std::string color_space = "auto";  ///< of the stored colours; auto: what the header says, else Rec. 709
+    std::string lens_model;            ///< "thin" or "pinhole"; "" where not known
     std::map<std::string, RoleDecoding> roles;
     std::map<std::string, CameraSource> camera;  ///< by camera field
     std::optional<CameraSource> field_of_view;   ///< across the picture's width

@@ -94,7 +94,8 @@ const Block& profile_block() {
                  required("detect", grammar::object(detect_block()), "How its files are detected."),
                  optional("color_space", color_space_form(),
                           "Primaries of the stored colours, which are light; auto: what the file "
-                          "says.", R"("auto")"),
+                          "says.",
+                          R"("auto")"),
                  optional("lens_model", grammar::choice(lens_model_names()),
                           "Lens model of the producer; default: unknown."),
                  required("roles", decodings(), "How stored channels become images."),

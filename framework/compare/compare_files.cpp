@@ -84,7 +84,8 @@ private:
     void check_traits() {
         const FileTraits &ours = reference_.traits(), &theirs = test_.traits();
         for (const auto& [traits, where] : {std::pair{&ours, "the reference"}, {&theirs, "the test image"}}) {
-            for (const std::string& what : traits->left_out) warn(fmt::format("not compared: {} in {}", what, where));
+            for (const std::string& what : traits->left_out)
+                warn(fmt::format("not compared: {} in {}", what, where));
             for (const std::string& note : traits->notes) result_.notes.push_back(where + (": " + note));
         }
         for (const CompareArea& area : rules_.areas)
@@ -142,11 +143,14 @@ private:
                     const LayerFile& other, const char* where) {
         for (const std::string& part : parts_of(file)) {
             const auto is_of = [&](const LayerInfo& layer) { return layer.part == part; };
-            const auto alone = std::ranges::count_if(unpaired, [&](const LayerInfo* at) { return is_of(*at); });
-            if (parts_of(other).contains(part) || alone != std::ranges::count_if(file.layers(), is_of)) continue;
+            const auto alone =
+                std::ranges::count_if(unpaired, [&](const LayerInfo* at) { return is_of(*at); });
+            if (parts_of(other).contains(part) || alone != std::ranges::count_if(file.layers(), is_of))
+                continue;
             missing_parts_.insert(part);
-            fault(part.empty() ? fmt::format("the {} has one part, the other has {}", where, parts_of(other).size())
-                               : fmt::format("part '{}' is only in the {}", part, where));
+            fault(part.empty()
+                      ? fmt::format("the {} has one part, the other has {}", where, parts_of(other).size())
+                      : fmt::format("part '{}' is only in the {}", part, where));
         }
     }
 

@@ -79,9 +79,9 @@ struct Comparison {
     /// What is not compared, or has equal numbers and is another picture: smaller levels of tiles, other
     /// primaries, another pixel aspect. Then the verdict is at least a warning.
     std::vector<std::string> warnings;
-    std::vector<std::string> notes;  ///< how files were read; no verdict
+    std::vector<std::string> notes;       ///< how files were read; no verdict
     std::vector<LayerComparison> layers;  ///< in the reference's order; without FLIP's error images and maps
-    std::vector<std::string> ignored;         ///< labels of layers that CompareRules::roles leaves out
+    std::vector<std::string> ignored;     ///< labels of layers that CompareRules::roles leaves out
     std::vector<std::string> unknown_roles;   ///< labels in CompareRules::roles that neither file has
     std::vector<std::string> unknown_layers;  ///< likewise in CompareRules::layers
     std::vector<std::string> labels;          ///< of every layer of either file

@@ -42,12 +42,11 @@ void judge(const Level& level, LayerComparison& comparison) {
     const double let_pass = std::max(double(tolerance.allowed), tolerance.percent / 100 * pixels);
     if (double(level.above.count) > let_pass)
         say(comparison, level.verdict,
-            fmt::format("{}{} pixels ({:.6g} %) differ by more than {} {:.6g}{}{}", level.where,
-                        level.above.count, 100 * double(level.above.count) / pixels, level.word,
-                        tolerance.limit,
-                        tolerance.relative > 0 ? fmt::format(" and {:.6g} of their value", tolerance.relative)
-                                               : "",
-                        let_pass > 0 ? fmt::format(", {:.6g} allowed", std::floor(let_pass)) : "") +
+            fmt::format(
+                "{}{} pixels ({:.6g} %) differ by more than {} {:.6g}{}{}", level.where, level.above.count,
+                100 * double(level.above.count) / pixels, level.word, tolerance.limit,
+                tolerance.relative > 0 ? fmt::format(" and {:.6g} of their value", tolerance.relative) : "",
+                let_pass > 0 ? fmt::format(", {:.6g} allowed", std::floor(let_pass)) : "") +
                 not_comparable(comparison.differences));
     if (level.hard.count > tolerance.allowed)
         say(comparison, level.verdict,
@@ -74,8 +73,8 @@ void judge_look(const char* word, Verdict verdict, const std::optional<double>& 
 }
 
 bool can_exceed(const Tolerance& tolerance, LayerRole role, std::uint64_t pixels) {
-    // Encoded colours and coverage are from 0 to 1. Nothing else is held to a million: such a limit stands for
-    // none in documents, where infinity cannot be written.
+    // Encoded colours and coverage are from 0 to 1. Nothing else is held to a million: such a limit stands
+    // for none in documents, where infinity cannot be written.
     const bool is_unit = role == LayerRole::display || role == LayerRole::alpha;
     const double no_limit = is_unit ? 1 : 1e6;
     const bool differs = role == LayerRole::id;  // ids that differ fail above any limit
@@ -115,8 +114,8 @@ Tolerance Levels::warn_tolerance() const {
 bool Levels::judge(LayerRole role, std::uint64_t pixels, bool has_flip, bool has_ssim) const {
     const auto by_flip = [&](const std::optional<double>& limit) { return has_flip && limit && *limit < 1; };
     const auto by_ssim = [&](const std::optional<double>& limit) { return has_ssim && limit && *limit > 0; };
-    return can_exceed(fail, role, pixels) || can_exceed(warn_tolerance(), role, pixels) || by_flip(fail_flip) ||
-           by_flip(warn_flip) || by_ssim(fail_ssim) || by_ssim(warn_ssim);
+    return can_exceed(fail, role, pixels) || can_exceed(warn_tolerance(), role, pixels) ||
+           by_flip(fail_flip) || by_flip(warn_flip) || by_ssim(fail_ssim) || by_ssim(warn_ssim);
 }
 
 DifferenceRules Levels::difference_limits() const {
@@ -168,8 +167,8 @@ void find_not_judged(const std::vector<const Levels*>& levels, LayerComparison& 
         if (levels[i]->judge(comparison.role, areas[i].pixels, is_layer && has_flip,
                              is_layer && comparison.ssim.has_value()))
             continue;
-        names.push_back(comparison.label + (is_layer ? " outside of the areas"
-                                                     : " in the area " + comparison.areas[i - 1]));
+        names.push_back(comparison.label +
+                        (is_layer ? " outside of the areas" : " in the area " + comparison.areas[i - 1]));
     }
     if (names.size() == with_pixels) names = {comparison.label};
     comparison.not_judged = std::move(names);

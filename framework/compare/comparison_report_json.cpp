@@ -130,14 +130,13 @@ Json layer_json(const LayerComparison& layer, const CompareRules& rules) {
 
 Json tolerance_json(const Tolerance& tolerance, const std::optional<double>& flip,
                     const std::optional<double>& ssim) {
-    return {
-        {"limit", number(tolerance.limit)},
-        {"relative", number(tolerance.relative)},
-        {"percent", tolerance.percent},
-        {"hard", number(tolerance.hard)},
-        {"allowed", tolerance.allowed},
-        {"flip", number(flip)},
-        {"ssim", number(ssim)}};
+    return {{"limit", number(tolerance.limit)},
+            {"relative", number(tolerance.relative)},
+            {"percent", tolerance.percent},
+            {"hard", number(tolerance.hard)},
+            {"allowed", tolerance.allowed},
+            {"flip", number(flip)},
+            {"ssim", number(ssim)}};
 }
 
 void add_levels(Json& json, const Levels& levels) {

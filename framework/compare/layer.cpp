@@ -178,7 +178,8 @@ std::vector<LayerInfo> layers_of_channels(const std::string& part, std::span<con
             return channel.name == upper || channel.name == lower;
         });
     };
-    names.has_vector = !part.empty() && ((has("X", "x") && has("Y", "y")) || (has("U", "u") && has("V", "v")));
+    names.has_vector =
+        !part.empty() && ((has("X", "x") && has("Y", "y")) || (has("U", "u") && has("V", "v")));
     for (const ExrChannel& channel : channels)
         if (is_color_component(component_of(channel.name))) names.with_color.insert(prefix_of(channel.name));
     std::vector<LayerInfo> layers;

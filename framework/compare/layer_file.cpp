@@ -87,9 +87,11 @@ void LayerFile::Impl::open_exr(ExrFile file) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = parts.size() > 1 ? parts[i].name : "";
         if (parts[i].has_smaller_levels)
-            traits.left_out.push_back("smaller levels of the tiles" + (name.empty() ? "" : " of part '" + name + "'"));
+            traits.left_out.push_back("smaller levels of the tiles" +
+                                      (name.empty() ? "" : " of part '" + name + "'"));
         std::vector<ExrChannel> channels = parts[i].channels;
-        // As colours too, so that it can be held against a file of R, G and B. The converter reads first parts.
+        // As colours too, so that it can be held against a file of R, G and B. The converter reads first
+        // parts.
         if (i == 0 && is_luminance_chroma(parts[i]))
             for (const std::string& color : kColors) channels.push_back({color, PixelType::half});
         for (LayerInfo& layer :
@@ -126,14 +128,16 @@ void LayerFile::Impl::open_png() {
     traits.colors = color.space;
     traits.pixel_aspect = color.pixel_aspect;
     if (color.is_animated) traits.left_out.push_back("all pictures of the animation but the first");
-    if (!color.is_srgb()) traits.notes.push_back("its colours are of " + color.space + ", and are read as sRGB");
+    if (!color.is_srgb())
+        traits.notes.push_back("its colours are of " + color.space + ", and are read as sRGB");
     if (color.gamma) {
-        traits.notes.push_back(
-            fmt::format("its chunk gAMA {:.5g} is applied: colours are compared as sRGB encodes them", *color.gamma));
+        traits.notes.push_back(fmt::format(
+            "its chunk gAMA {:.5g} is applied: colours are compared as sRGB encodes them", *color.gamma));
         const int colors = image.channels() - (image.channels() % 2 == 0 ? 1 : 0);
         for (int y = 0; y < image.height(); ++y)
             for (int x = 0; x < image.width(); ++x)
-                for (int c = 0; c < colors; ++c) image.at(x, y, c) = encoded_as_srgb(image.at(x, y, c), *color.gamma);
+                for (int c = 0; c < colors; ++c)
+                    image.at(x, y, c) = encoded_as_srgb(image.at(x, y, c), *color.gamma);
     }
     open_flat(std::move(image), LayerRole::display);
 }
@@ -210,7 +214,8 @@ Image LayerFile::Impl::read_exr(const LayerInfo& layer, const std::vector<std::s
         const Image colors = exr->read_luminance_chroma(at);
         Image image(colors.width(), colors.height(), int(channels.size()));
         for (std::size_t c = 0; c < channels.size(); ++c)
-            copy_channel(colors, int(std::ranges::find(kColors, channels[c]) - kColors.begin()), image, int(c));
+            copy_channel(colors, int(std::ranges::find(kColors, channels[c]) - kColors.begin()), image,
+                         int(c));
         return image;
     }
     const auto repeats = [&](const std::string& name) { return is_subsampled(*find_channel(part, name)); };
@@ -237,7 +242,8 @@ void LayerFile::prefetch() const {
             const ExrChannel* const channel = find_channel(part, name);
             return channel && !is_subsampled(*channel);
         };
-        if (std::ranges::all_of(layer.channels, is_plain)) requests.push_back({at, layer.channels, layer.type});
+        if (std::ranges::all_of(layer.channels, is_plain))
+            requests.push_back({at, layer.channels, layer.type});
     }
     impl_->exr->prefetch(requests);
 }

@@ -21,8 +21,8 @@ struct FileTraits {
 };
 
 /// OpenEXR, PNG or Radiance, recognised by its first bytes. OpenEXR: every part, level 0 of tiles; samples of
-/// subsampled channels are repeated over their pixels; a first part of luminance and chroma has a layer of R, G
-/// and B in half precision besides what it stores. PNG: `display`, value / maximum. Radiance: `color`.
+/// subsampled channels are repeated over their pixels; a first part of luminance and chroma has a layer of R,
+/// G and B in half precision besides what it stores. PNG: `display`, value / maximum. Radiance: `color`.
 /// Headers are read on construction. [one thread at a time]
 class LayerFile {
 public:

@@ -28,7 +28,8 @@ std::set<std::string> prefixes_of(const LayerInfo& layer, Names names) {
         return a.empty() || b.empty() ? a + b : a + "." + b;
     };
     std::set<std::string> prefixes;
-    if (layer.part.empty() || !layer.name.empty() || names == Names::within_parts) prefixes.insert(layer.name);
+    if (layer.part.empty() || !layer.name.empty() || names == Names::within_parts)
+        prefixes.insert(layer.name);
     if (!layer.part.empty()) prefixes.insert(joined(layer.part, layer.name));
     if (layer.view.empty()) return prefixes;
     const std::string base = name_without_view(layer);
@@ -67,7 +68,8 @@ public:
             const auto match = std::ranges::find(test_, reference_[i].key(), &LayerInfo::key);
             if (match != test_.end()) take(i, *match);
         }
-        while (pair_by(Names::whole) || (one_has_one_part() && pair_by(Names::within_parts))) {}
+        while (pair_by(Names::whole) || (one_has_one_part() && pair_by(Names::within_parts))) {
+        }
         return found_;
     }
 

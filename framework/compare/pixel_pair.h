@@ -41,7 +41,6 @@ struct PixelDifference {
         return comparable != other.comparable ? comparable : value < other.value;
     }
 };
-PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role,
-                              double relative = 0);
+PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role, double relative = 0);
 
 }  // namespace aftershade

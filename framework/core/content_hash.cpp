@@ -44,11 +44,11 @@ FileContent file_content(const std::filesystem::path& path) {
     // A FIFO would be waited for, a device never end.
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) throw fail();
-    struct stat found{};
+    struct stat found {};
     if (fstat(file, &found) != 0 || !S_ISREG(found.st_mode)) {
         close(file);
-        throw Error(ExitCode::capture, path.string() +
-                                           ": is not a regular file (a pipe, socket or device cannot be read)");
+        throw Error(ExitCode::capture,
+                    path.string() + ": is not a regular file (a pipe, socket or device cannot be read)");
     }
     const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
                                                                                 XXH3_freeState);

@@ -68,8 +68,7 @@ Image read_png_picture(const fs::path& path, PictureSpace space) {
             const float alpha = has_alpha ? stored.at(x, y, stored.channels() - 1) : 1.0f;
             for (int c = 0; c < kAlpha; ++c) {
                 const float value = stored.at(x, y, grey ? 0 : c);
-                image.at(x, y, c) =
-                    space == PictureSpace::data ? value : float(light(value) * double(alpha));
+                image.at(x, y, c) = space == PictureSpace::data ? value : float(light(value) * double(alpha));
             }
             image.at(x, y, kAlpha) = alpha;
         }

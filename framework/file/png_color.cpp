@@ -19,8 +19,8 @@ namespace {
 using Bytes = std::span<const unsigned char>;
 
 std::uint32_t number_at(Bytes bytes, std::size_t at) {
-    return std::uint32_t(bytes[at]) << 24 | std::uint32_t(bytes[at + 1]) << 16 | std::uint32_t(bytes[at + 2]) << 8 |
-           std::uint32_t(bytes[at + 3]);
+    return std::uint32_t(bytes[at]) << 24 | std::uint32_t(bytes[at + 1]) << 16 |
+           std::uint32_t(bytes[at + 2]) << 8 | std::uint32_t(bytes[at + 3]);
 }
 
 /// ICC.1:2022, 4.6: signed, 16 bits of fraction.
@@ -54,10 +54,12 @@ Bytes tag_of(Bytes profile, std::string_view name) {
     constexpr std::size_t kTable = 128, kEntryBytes = 12;
     if (profile.size() < kTable + 4) return {};
     const std::size_t count = std::min<std::size_t>(number_at(profile, kTable), 100);
-    for (std::size_t i = 0, at = kTable + 4; i < count && at + kEntryBytes <= profile.size(); ++i, at += kEntryBytes) {
+    for (std::size_t i = 0, at = kTable + 4; i < count && at + kEntryBytes <= profile.size();
+         ++i, at += kEntryBytes) {
         const std::size_t begin = number_at(profile, at + 4), size = number_at(profile, at + 8);
         if (std::equal(name.begin(), name.end(), profile.begin() + std::ptrdiff_t(at)))
-            return begin <= profile.size() && size <= profile.size() - begin ? profile.subspan(begin, size) : Bytes{};
+            return begin <= profile.size() && size <= profile.size() - begin ? profile.subspan(begin, size)
+                                                                             : Bytes{};
     }
     return {};
 }
@@ -111,7 +113,8 @@ bool is_srgb_profile(Bytes profile) {
     // sRGB's primaries, adapted to D50 by Bradford's method (IEC 61966-2-1, annex F; ICC's own profiles).
     constexpr std::array<std::array<double, 3>, 3> kColorants = {
         {{0.4361, 0.2225, 0.0139}, {0.3851, 0.7169, 0.0971}, {0.1431, 0.0606, 0.7141}}};
-    constexpr std::array<std::string_view, 3> kNames = {"rXYZ", "gXYZ", "bXYZ"}, kCurves = {"rTRC", "gTRC", "bTRC"};
+    constexpr std::array<std::string_view, 3> kNames = {"rXYZ", "gXYZ", "bXYZ"},
+                                              kCurves = {"rTRC", "gTRC", "bTRC"};
     for (std::size_t i = 0; i < kNames.size(); ++i) {
         const Bytes colorant = tag_of(profile, kNames[i]);
         if (!has_type(colorant, "XYZ ", 20) || !is_srgb_curve(tag_of(profile, kCurves[i]))) return false;
@@ -136,7 +139,8 @@ void PngColorReader::read(const std::string& type, Bytes data) {
         const auto end = std::ranges::find(data, 0);
         if (data.end() - end < 2) return;  // after the name a method, which is always zlib's
         has_icc_ = true;
-        const std::vector<unsigned char> profile = inflated(data.subspan(std::size_t(end - data.begin()) + 2));
+        const std::vector<unsigned char> profile =
+            inflated(data.subspan(std::size_t(end - data.begin()) + 2));
         if (is_srgb_profile(profile)) return;
         icc_ = fmt::format("ICC profile '{}' (checksum {:08x})", printable(std::string(data.begin(), end)),
                            crc32(0, profile.data(), uInt(profile.size())));

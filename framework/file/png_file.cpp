@@ -77,7 +77,9 @@ std::string aspect_chunk(float pixel_aspect) {
     constexpr double kPerUnit = 1'000'000;
     if (!(pixel_aspect > 1 / kPerUnit && pixel_aspect < kPerUnit)) return "";
     const double larger = std::max(1.0, double(pixel_aspect));
-    const auto along = [&](double share) { return number_text(std::uint32_t(std::lround(kPerUnit * share))); };
+    const auto along = [&](double share) {
+        return number_text(std::uint32_t(std::lround(kPerUnit * share)));
+    };
     // Wide pixels are fewer along x.
     return chunk("pHYs", along(1 / larger) + along(double(pixel_aspect) / larger) + '\0');
 }
@@ -137,7 +139,7 @@ std::string encode_png(const std::string& name, const Image& display, const PngT
     if (sink.failure) std::rethrow_exception(sink.failure);
     if (written == 0) throw Error(ExitCode::memory, name + ": " + out_of_memory_text(std::bad_alloc()));
     constexpr std::size_t kSizeChunkBytes = kChunkHeadBytes + 13 + kChecksumBytes;  // IHDR, the first
-    const std::string perceptual(1, '\0');  // the rendering intent
+    const std::string perceptual(1, '\0');                                          // the rendering intent
     std::string chunks = meaning.is_srgb ? chunk("sRGB", perceptual) : "";
     for (const auto& [keyword, value] : text) chunks += chunk("tEXt", keyword + '\0' + value);
     if (meaning.pixel_aspect != 1) chunks += aspect_chunk(meaning.pixel_aspect);

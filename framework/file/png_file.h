@@ -37,8 +37,8 @@ std::optional<std::string> read_png_text(const std::filesystem::path& path, cons
 /// What the chunks of a whole PNG say; nullopt of any other file.
 std::optional<PngColor> read_png_color(const std::filesystem::path& path);
 
-/// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored; `color` gets what they mean. Throws
-/// Error(ExitCode::capture).
+/// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored; `color` gets what they mean.
+/// Throws Error(ExitCode::capture).
 Image read_png(const std::filesystem::path& path, PngColor* color = nullptr);
 
 }  // namespace aftershade

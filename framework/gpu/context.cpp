@@ -61,8 +61,9 @@ private:
             result += fmt::format("\n  {}: {}{}", backend_name(reason.backend), reason.text,
                                   other ? "" : reason.advice);
         if (other)
-            result += fmt::format("\n  '{}' works here and draws the same bits; '{}' takes whichever is there",
-                                  backend_name(*other), backend_name(Backend::software));
+            result +=
+                fmt::format("\n  '{}' works here and draws the same bits; '{}' takes whichever is there",
+                            backend_name(*other), backend_name(Backend::software));
         return result;
     }
 

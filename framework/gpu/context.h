@@ -12,8 +12,8 @@ struct GladGLContext;
 
 namespace aftershade::gpu {
 
-/// Which library and which kind of renderer. `automatic` tries egl, egl_software and osmesa in this order, and
-/// `software` the last two, which draw the same bits.
+/// Which library and which kind of renderer. `automatic` tries egl, egl_software and osmesa in this order,
+/// and `software` the last two, which draw the same bits.
 enum class Backend { automatic, egl, egl_software, osmesa, software };
 
 /// "auto", "egl", "software", "egl-software", "osmesa"; nullopt for anything else.

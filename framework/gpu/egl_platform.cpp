@@ -206,10 +206,11 @@ private:
         std::optional<ScopedVariable> variable;
         if (force_software) variable.emplace("LIBGL_ALWAYS_SOFTWARE", "1");
         if (egl_.initialize(display_, nullptr, nullptr)) return;
-        throw Error(ExitCode::gl,
-                    fmt::format("{}: eglInitialize failed ({}): the driver does not load or may not open its device; "
-                                "EGL_LOG_LEVEL=debug makes it say why",
-                                name_, error_name(egl_.get_error())));
+        throw Error(
+            ExitCode::gl,
+            fmt::format("{}: eglInitialize failed ({}): the driver does not load or may not open its device; "
+                        "EGL_LOG_LEVEL=debug makes it say why",
+                        name_, error_name(egl_.get_error())));
     }
 
     EGLConfig config() const {
@@ -305,10 +306,11 @@ std::unique_ptr<Platform> make_egl_platform(Renderer kind) {
         }
     }
     if (!reasons.empty()) throw Error(ExitCode::gl, reasons);
-    throw Error(ExitCode::gl, kind == Renderer::hardware
-                                  ? "EGL lists no hardware device"
-                                  : "EGL lists no software device: it finds no Mesa among its vendors (Debian "
-                                    "package libegl-mesa0), or __EGL_VENDOR_LIBRARY_FILENAMES leaves it out");
+    throw Error(ExitCode::gl,
+                kind == Renderer::hardware
+                    ? "EGL lists no hardware device"
+                    : "EGL lists no software device: it finds no Mesa among its vendors (Debian "
+                      "package libegl-mesa0), or __EGL_VENDOR_LIBRARY_FILENAMES leaves it out");
 }
 
 }  // namespace aftershade::gpu

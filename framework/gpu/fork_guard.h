@@ -6,7 +6,8 @@
 
 namespace aftershade::gpu {
 
-/// From now on a fork makes is_forked_from_gl() true in the child; call before the first work of a context. [any thread]
+/// From now on a fork makes is_forked_from_gl() true in the child; call before the first work of a context.
+/// [any thread]
 void watch_for_forks() noexcept;
 
 /// Whether this process was forked, directly or not, from one that had made a context. [any thread]

@@ -30,9 +30,15 @@ void load_ahead(Backend backend) noexcept {
 
 bool is_software_renderer(std::string_view renderer) {
     // WARP calls itself Microsoft Basic Render Driver, alone and below Mesa's d3d12.
-    static constexpr std::array<std::string_view, 9> kNames = {
-        "llvmpipe",    "lavapipe",               "softpipe",       "swrast", "software rasterizer",
-        "swiftshader", "microsoft basic render", "direct3d warp", "openswr"};
+    static constexpr std::array<std::string_view, 9> kNames = {"llvmpipe",
+                                                               "lavapipe",
+                                                               "softpipe",
+                                                               "swrast",
+                                                               "software rasterizer",
+                                                               "swiftshader",
+                                                               "microsoft basic render",
+                                                               "direct3d warp",
+                                                               "openswr"};
     const std::string lower = lower_case(renderer);
     return std::any_of(kNames.begin(), kNames.end(),
                        [&](std::string_view name) { return lower.find(name) != std::string::npos; });
@@ -40,8 +46,8 @@ bool is_software_renderer(std::string_view renderer) {
 
 namespace {
 
-/// Whether the loader says that it finds no file of the library itself. A library that it finds and cannot load
-/// has an undefined symbol, or lacks another one, which the loader then names without a path.
+/// Whether the loader says that it finds no file of the library itself. A library that it finds and cannot
+/// load has an undefined symbol, or lacks another one, which the loader then names without a path.
 bool is_absent(std::string_view message, std::string_view name) {
     const std::string_view file = message.substr(0, message.find(':'));
     return message.find("cannot open shared object file: No such file") != std::string_view::npos &&
@@ -57,7 +63,8 @@ void* open_library(std::initializer_list<const char*> names, std::string_view pa
         const char* said = dlerror();
         const std::string message = said ? said : name;
         if (said && !is_absent(message, name))
-            throw Error(ExitCode::gl, fmt::format("{} is there, but the loader refuses it: {}", name, message));
+            throw Error(ExitCode::gl,
+                        fmt::format("{} is there, but the loader refuses it: {}", name, message));
         if (absent.empty()) absent = message;
     }
     throw AbsentLibrary(absent, fmt::format("; install the Debian package {}", package));

@@ -52,8 +52,8 @@ private:
     std::string advice_;
 };
 
-/// dlopen of the first of `names` that loads. Throws AbsentLibrary, which names the Debian package, where none is
-/// there; Error with the loader's words where one is and cannot be loaded.
+/// dlopen of the first of `names` that loads. Throws AbsentLibrary, which names the Debian package, where
+/// none is there; Error with the loader's words where one is and cannot be loaded.
 void* open_library(std::initializer_list<const char*> names, std::string_view package);
 
 /// GL_VERSION, for gl_string().

@@ -40,11 +40,11 @@ struct NamedCurve {
     double gamma = 1;
 };
 constexpr std::array kCurves = {
-    NamedCurve{"lin", Curve::linear},      NamedCurve{"srgb", Curve::srgb},
-    NamedCurve{"srgbe", Curve::srgb},      NamedCurve{"g18", Curve::gamma, 1.8},
-    NamedCurve{"g22", Curve::gamma, 2.2},  NamedCurve{"g24", Curve::gamma, 2.4},
-    NamedCurve{"g26", Curve::gamma, 2.6},  NamedCurve{"pq", Curve::unknown},
-    NamedCurve{"hlg", Curve::unknown},     NamedCurve{"acescct", Curve::unknown},
+    NamedCurve{"lin", Curve::linear},     NamedCurve{"srgb", Curve::srgb},
+    NamedCurve{"srgbe", Curve::srgb},     NamedCurve{"g18", Curve::gamma, 1.8},
+    NamedCurve{"g22", Curve::gamma, 2.2}, NamedCurve{"g24", Curve::gamma, 2.4},
+    NamedCurve{"g26", Curve::gamma, 2.6}, NamedCurve{"pq", Curve::unknown},
+    NamedCurve{"hlg", Curve::unknown},    NamedCurve{"acescct", Curve::unknown},
     NamedCurve{"acescc", Curve::unknown},
 };
 

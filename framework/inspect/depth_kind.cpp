@@ -127,8 +127,8 @@ DepthKind find_depth_kind(const Image& depth, const Image& position) {
     kind.planar_error = root_mean_square(planar) / median;
     kind.radial_error = root_mean_square(radial) / median;
     const auto off_share = [&](const std::vector<double>& errors) {
-        const auto off = std::ranges::count_if(
-            errors, [&](double error) { return std::abs(error) > kFits * median; });
+        const auto off =
+            std::ranges::count_if(errors, [&](double error) { return std::abs(error) > kFits * median; });
         return double(off) / double(errors.size());
     };
     kind.planar_off = off_share(planar);

@@ -15,7 +15,7 @@ namespace aftershade {
 struct DepthKind {
     double planar_error = 0;  ///< root mean square, as a share of the median depth
     double radial_error = 0;
-    double planar_off = 0;    ///< share of the pixels whose depth is off by more than 1 % of the median depth
+    double planar_off = 0;  ///< share of the pixels whose depth is off by more than 1 % of the median depth
     double radial_off = 0;
     std::size_t pixels = 0;  ///< that were looked at; 0 where there are too few
 

@@ -56,8 +56,8 @@ double ratio_to_camera(const Image& depth, const Image& position, const CameraMa
             const double d = double(depth.at(x, y, 0));
             const double px = double(position.at(x, y, 0)), py = double(position.at(x, y, 1)),
                          pz = double(position.at(x, y, 2));
-            const bool is_hit = std::isfinite(d) && d > 0 && std::isfinite(px + py + pz) &&
-                                (px != 0 || py != 0 || pz != 0);
+            const bool is_hit =
+                std::isfinite(d) && d > 0 && std::isfinite(px + py + pz) && (px != 0 || py != 0 || pz != 0);
             // View space looks along -z.
             if (is_hit) ratios.push_back(-(m[8] * px + m[9] * py + m[10] * pz + m[11]) / d);
         }
@@ -72,19 +72,22 @@ std::string find_position_fault(const Image& depth, const Image& position, const
         const bool covers_others = overlap(depth, position) < 0.5;
         if (!kind.contradicts() && !covers_others) return "";
         if (covers_others && overlap(upside_down(depth), position) < kMostlyTrue) return "";
-        if (covers_others || find_depth_kind(upside_down(depth), position).verdict() != DepthKind::Verdict::unknown)
+        if (covers_others ||
+            find_depth_kind(upside_down(depth), position).verdict() != DepthKind::Verdict::unknown)
             return "the depth is upside down against the position: with its rows in the other order it fits; "
                    "write both from the same corner of the picture";
-        return fmt::format("the depth contradicts the position: read as planar it is {:.2g} % off, as radial "
-                           "{:.2g} %; check the depth's encoding, unit and channel",
-                           100 * kind.planar_error, 100 * kind.radial_error);
+        return fmt::format(
+            "the depth contradicts the position: read as planar it is {:.2g} % off, as radial "
+            "{:.2g} %; check the depth's encoding, unit and channel",
+            100 * kind.planar_error, 100 * kind.radial_error);
     }
     if (!camera.camera_from_world || kind.verdict() != DepthKind::Verdict::planar) return "";
     const double ratio = ratio_to_camera(depth, position, *camera.camera_from_world);
     if (std::abs(ratio - 1) <= kDepthSlack) return "";
-    return fmt::format("depth and position fit each other, but not the camera's matrices: by these the pixels are "
-                       "{:.4g} times as far away (median); check the space of the positions and the matrices",
-                       ratio);
+    return fmt::format(
+        "depth and position fit each other, but not the camera's matrices: by these the pixels are "
+        "{:.4g} times as far away (median); check the space of the positions and the matrices",
+        ratio);
 }
 
 std::string find_normal_fault(const Image& normal) {
@@ -105,12 +108,14 @@ std::string find_normal_fault(const Image& normal) {
     const double median = median_of(lengths);
     if (std::abs(median - 1) <= kLengthSlack) return "";
     if (negative == 0 && double(packed) >= kMostlyTrue * double(pixels))
-        return fmt::format("the normals are packed: all components are from 0 to 1, and 2 n - 1 has length 1 in "
-                           "{} of {} pixels; no setting undoes that, so have the producer write -1 to 1",
-                           packed, pixels);
-    return fmt::format("the normals have length {:.3g} (median of {} pixels), not 1; have the producer write unit "
-                       "vectors, or check the channels",
-                       median, pixels);
+        return fmt::format(
+            "the normals are packed: all components are from 0 to 1, and 2 n - 1 has length 1 in "
+            "{} of {} pixels; no setting undoes that, so have the producer write -1 to 1",
+            packed, pixels);
+    return fmt::format(
+        "the normals have length {:.3g} (median of {} pixels), not 1; have the producer write unit "
+        "vectors, or check the channels",
+        median, pixels);
 }
 
 }  // namespace aftershade

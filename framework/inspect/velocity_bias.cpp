@@ -16,12 +16,12 @@ namespace aftershade {
 
 namespace {
 
-constexpr double kHalfway = 0.5;        // the bias of vectors that are stored in 0 to 1
+constexpr double kHalfway = 0.5;         // the bias of vectors that are stored in 0 to 1
 constexpr double kByteStep = 1.0 / 255;  // so far from it may the bias of bytes lie: 127 and 128 of 255
 constexpr double kCommonShare = 0.1;     // of the pixels
 constexpr double kPileShare = 0.0005;    // of the pixels; motion that is not clamped rarely ends in one value
 constexpr std::size_t kLeastPile_px = 16;
-constexpr double kKeySteps = 65536;      // a decoded value differs from the stored one by rounding
+constexpr double kKeySteps = 65536;  // a decoded value differs from the stored one by rounding
 constexpr double kLargestHalf = 65504;
 
 std::array<double, 2> gain_of(const Image& image, const VelocitySettings& settings) {
@@ -98,7 +98,8 @@ Image stored_vectors(const Image& decoded, const VelocitySettings& settings) {
     for (int y = 0; y < decoded.height(); ++y)
         for (int x = 0; x < decoded.width(); ++x)
             for (int c = 0; c < 2; ++c)
-                stored.at(x, y, c) = float(double(decoded.at(x, y, c)) / gain[std::size_t(c)] + settings.bias);
+                stored.at(x, y, c) =
+                    float(double(decoded.at(x, y, c)) / gain[std::size_t(c)] + settings.bias);
     return stored;
 }
 

@@ -1,5 +1,5 @@
-// Readings of motion vectors that differ from a profile's in their bias or unit: what the stored values hint at.
-// No other file than velocity_check.cpp includes it.
+// Readings of motion vectors that differ from a profile's in their bias or unit: what the stored values hint
+// at. No other file than velocity_check.cpp includes it.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace aftershade {
 
-/// Vectors as the file stores them: what `settings` decoded to px, undone. An exchange of channels is not undone.
+/// Vectors as the file stores them: what `settings` decoded to px, undone. An exchange of channels is not
+/// undone.
 Image stored_vectors(const Image& decoded, const VelocitySettings& settings);
 
 /// Stored vectors in px. Those at a limit of the stored range become NaN, as a clamped vector is false.

@@ -103,12 +103,14 @@ std::string scale_or_unknown(const std::optional<double>& scale) {
 
 std::string describe_no_fit(const VelocityCheck& check) {
     const std::string none_fits = fmt::format(
-        "The profile is not confirmed: no change of sign, order or factor of 2 fits (the profile's own reading "
+        "The profile is not confirmed: no change of sign, order or factor of 2 fits (the profile's own "
+        "reading "
         "removes {} of the difference between the frames, the best listed {})",
         percent(check.identity.score), percent(check.best.score));
     if (check.suggested == check.settings && check.fit->score > check.best.score + kClearlyMore)
         return fmt::format(
-            "{}; free scales (x {}, y {}) remove {}, but these frames are too little evidence for a change; use "
+            "{}; free scales (x {}, y {}) remove {}, but these frames are too little evidence for a change; "
+            "use "
             "frames in which more moves, along both axes",
             none_fits, scale_or_unknown(check.fit->scale_x), scale_or_unknown(check.fit->scale_y),
             percent(check.fit->score));
@@ -242,9 +244,9 @@ void add_difference(const VelocitySettings& settings, const VelocityHypothesis& 
 
 std::string describe_verdict(const VelocityCheck& check) {
     const std::string text = describe_without_limit(check);
-    return check.at_limit.empty()
-               ? text
-               : text + "; " + check.at_limit + ": longer vectors were cut off; have the producer write floats";
+    return check.at_limit.empty() ? text
+                                  : text + "; " + check.at_limit +
+                                        ": longer vectors were cut off; have the producer write floats";
 }
 
 std::string format_velocity_check(const VelocityCheck& check) {

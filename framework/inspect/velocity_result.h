@@ -14,8 +14,8 @@ struct VelocitySettings {
     std::string y_axis = "down";     ///< down, up
     std::string unit = "px";         ///< px, uv, ndc
     std::array<double, 2> scale = {1, 1};
-    double bias = 0;            ///< the stored value of no motion
-    double shutter_frames = 1;  ///< frames that a vector spans
+    double bias = 0;                 ///< the stored value of no motion
+    double shutter_frames = 1;       ///< frames that a vector spans
     bool exchange_channels = false;  ///< the two channels are to be named in the other order
 
     /// The vectors go from a frame to the next one: the role is velocity_next.
@@ -66,13 +66,13 @@ struct VelocityCheck {
     VelocityVerdict verdict = VelocityVerdict::untestable;
     std::vector<VelocityScore> hypotheses;  ///< the 48 listed, best first
     VelocityScore best;
-    VelocityScore identity;          ///< the claim
-    VelocityScore rival;             ///< the best of all others
-    std::optional<VelocityFit> fit;  ///< where anything was tested
+    VelocityScore identity;                  ///< the claim
+    VelocityScore rival;                     ///< the best of all others
+    std::optional<VelocityFit> fit;          ///< where anything was tested
     std::optional<VelocityReading> reading;  ///< where it refutes the claim, or these frames do not decide
     std::string at_limit;  ///< "1298 pixels ... are stored as 1, ..."; "" where no values pile up at a limit
-    VelocitySettings settings;  ///< as given
-    VelocitySettings suggested;      ///< `settings` where nothing better is known
+    VelocitySettings settings;   ///< as given
+    VelocitySettings suggested;  ///< `settings` where nothing better is known
     /// What these frames do not tell, in the profile's words: "delta" (its sign), "delta (cur-prev or
     /// next-cur)", "y_axis", "order of channels", "scale", "bias".
     std::vector<std::string> untold;

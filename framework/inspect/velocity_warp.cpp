@@ -242,8 +242,8 @@ TimeDispute WarpTest::dispute_in_time(const VectorMap& map, const WarpTest& othe
         dispute.other += error_other;
         ++dispute.count;
     }
-    dispute.told = dispute.count >= kMinCompared &&
-                   double(dispute.count) >= kMinDisputed * double(samples_.size());
+    dispute.told =
+        dispute.count >= kMinCompared && double(dispute.count) >= kMinDisputed * double(samples_.size());
     return dispute;
 }
 

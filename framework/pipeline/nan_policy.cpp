@@ -56,7 +56,8 @@ std::string remedy(NanPolicy policy, const std::string& role = "") {
         return decoded.empty() ? " (--on-nan mend replaces such pixels, --on-nan fail leaves such frames out)"
                                : " (--on-nan fail leaves such frames out)";
     return "; the frame is left out (--on-nan fail; " +
-           (decoded.empty() ? "--on-nan mend replaces such pixels)" : "--on-nan warn reads them as " + decoded + ")");
+           (decoded.empty() ? "--on-nan mend replaces such pixels)"
+                            : "--on-nan warn reads them as " + decoded + ")");
 }
 
 std::string source_text(const Capture& capture) {

@@ -218,8 +218,7 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
     }
     if (kind_of_role(role) == RoleKind::motion)
         if (const auto motion = channels_of_motion(header.channels); !motion.empty())
-            text += list_of_names(motion, "and") +
-                    (motion.size() == 1 ? " looks" : " look") +
+            text += list_of_names(motion, "and") + (motion.size() == 1 ? " looks" : " look") +
                     " like motion, whose unit, direction and sign no name says, so it is read only as "
                     "declared; ";
     return text + "--role " + role + "=FILE reads it from a file of its own; \"channels\": {\"" + role +

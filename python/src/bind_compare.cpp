@@ -97,9 +97,9 @@ nb::dict comparison_to(const api::Comparison& comparison) {
 
 void bind_compare(nb::module_& module) {
     nb::class_<api::CompareOptions>(module, "CompareOptions")
-        .def(nb::new_(&compare_options), "limit"_a, "relative"_a, "percent"_a, "allowed"_a, "fail_flip"_a.none(),
-             "fail_ssim"_a.none(), "nan_equal"_a, "flip"_a, "ssim"_a, "maps"_a, "pixels_per_degree"_a,
-             "roles"_a);
+        .def(nb::new_(&compare_options), "limit"_a, "relative"_a, "percent"_a, "allowed"_a,
+             "fail_flip"_a.none(), "fail_ssim"_a.none(), "nan_equal"_a, "flip"_a, "ssim"_a, "maps"_a,
+             "pixels_per_degree"_a, "roles"_a);
     module.def(
         "compare_files",
         [](const fs::path& reference, const fs::path& test, const api::CompareOptions& options) {

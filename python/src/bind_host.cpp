@@ -15,12 +15,12 @@ using namespace nb::literals;
 namespace fs = std::filesystem;
 
 api::Backend backend_from(const std::string& name) {
-    for (const auto backend :
-         {api::Backend::automatic, api::Backend::egl, api::Backend::software, api::Backend::egl_software,
-          api::Backend::osmesa})
+    for (const auto backend : {api::Backend::automatic, api::Backend::egl, api::Backend::software,
+                               api::Backend::egl_software, api::Backend::osmesa})
         if (name == api::backend_name(backend)) return backend;
     throw nb::value_error(
-        ("backend '" + name + "' is unknown; there are auto, egl, software, egl-software and osmesa").c_str());
+        ("backend '" + name + "' is unknown; there are auto, egl, software, egl-software and osmesa")
+            .c_str());
 }
 
 HostPointer make_host(const fs::path& data, const std::vector<fs::path>& effect_paths,

@@ -113,9 +113,9 @@ TEST_F(Suite, FindsGoldensThatNoCaseGives) {
 
 // ---- environments and approved images ----
 
-const GoldenEnvironment kHere = {"osmesa", "llvmpipe (LLVM 15.0.6, 256 bits)",
-                                 "4.5 (Core Profile) Mesa 22.3.6", "AMD EPYC", true,
-                                 "x86-64 with FMA"};
+const GoldenEnvironment kHere = {
+    "osmesa",         "llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6", "AMD EPYC", true,
+    "x86-64 with FMA"};
 
 TEST(GoldenEnvironment, IsOneByRendererMesaAndInstructions) {
     EXPECT_EQ(kHere.mesa(), "22.3.6");
@@ -136,8 +136,7 @@ TEST(GoldenEnvironment, IsOneByRendererMesaAndInstructions) {
     };
     EXPECT_EQ(changed(&GoldenEnvironment::version, "4.5 (Core Profile) Mesa 25.0.7-2"),
               "Mesa 25.0.7-2 instead of 22.3.6");
-    EXPECT_EQ(changed(&GoldenEnvironment::renderer, "softpipe"),
-              "the renderer softpipe instead of llvmpipe");
+    EXPECT_EQ(changed(&GoldenEnvironment::renderer, "softpipe"), "the renderer softpipe instead of llvmpipe");
     EXPECT_EQ(changed(&GoldenEnvironment::instructions, "x86-64 without FMA"),
               "the processor is x86-64 without FMA instead of x86-64 with FMA");
     other = kHere;
@@ -174,7 +173,9 @@ TEST(ApprovedImages, ComeWithTheOwnRenderersFirst) {
     intel.instructions = "x86-64 without FMA";
     const auto approve = [&](const std::string& name, const GoldenEnvironment& environment) {
         write_text(folder / (name + ".exr"), name);
-        GoldenSidecar sidecar{environment, "aftershade golden approve x", {"hash", "files", "0.1.0"},
+        GoldenSidecar sidecar{environment,
+                              "aftershade golden approve x",
+                              {"hash", "files", "0.1.0"},
                               file_hash(folder / (name + ".exr"))};
         write_text(folder / (name + ".json"), sidecar_text(sidecar));
     };
@@ -230,11 +231,13 @@ TEST(CaptureHash, ChangesWithFramesNeighboursAndDocumentAndIsNoneOfAPipe) {
     EXPECT_NE(alone, before) << "absent is not empty";
     write_text(folder / "f_0001.exr", "another picture");
     EXPECT_NE(hash(), alone);
-    write_text(folder / "capture.json", R"({ "aftershade": 1, "frames": "f_####.exr", "range": "1-5", "profile": "blender" })");
+    write_text(folder / "capture.json",
+               R"({ "aftershade": 1, "frames": "f_####.exr", "range": "1-5", "profile": "blender" })");
     test.capture = folder / "capture.json";
     const std::string documented = hash();
     EXPECT_NE(documented, alone);
-    write_text(folder / "capture.json", R"({ "aftershade": 1, "frames": "f_####.exr", "range": "1-5", "profile": "native" })");
+    write_text(folder / "capture.json",
+               R"({ "aftershade": 1, "frames": "f_####.exr", "range": "1-5", "profile": "native" })");
     EXPECT_NE(hash(), documented);
     fs::remove(folder / "f_0001.exr");
     ASSERT_EQ(mkfifo((folder / "f_0001.exr").c_str(), 0600), 0);

@@ -40,7 +40,9 @@ void through_the_executor(benchmark::State& state) {
     const graph::TextureHandle input = graph.import_texture("input", picture(state));
     graph::TextureHandle last = input;
     for (int i = 0; i < kPasses; ++i) {
-        graph::Pass pass{.name = "copy" + std::to_string(i), .program = {std::shared_ptr<void>(), &copy}, .reads = {{last}}};
+        graph::Pass pass{.name = "copy" + std::to_string(i),
+                         .program = {std::shared_ptr<void>(), &copy},
+                         .reads = {{last}}};
         pass.targets = {{graph.create_texture("t" + std::to_string(i), picture(state))}};
         last = graph.add_pass(std::move(pass)).targets[0];
     }

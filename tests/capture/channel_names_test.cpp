@@ -57,11 +57,15 @@ protected:
 };
 
 TEST_F(NamedChannels, HaveTheirAlphaUnderAnyUsualName) {
-    for (const Names& channels :
-         {Names{"R", "G", "B", "alpha"}, {"R", "G", "B", "a"}, {"Ci.r", "Ci.g", "Ci.b", "a"},
-          {"beauty.R", "beauty.G", "beauty.B", "A"}, {"rgb.R", "rgb.G", "rgb.B", "alpha.V"},
-          {"main.rgb.R", "main.rgb.G", "main.rgb.B", "main.Alpha.Y"}, {".R", ".G", ".B", ".A"},
-          {"red", "green", "blue", "ALPHA"}, {"beauty_R", "beauty_G", "beauty_B", "beauty_A"}})
+    for (const Names& channels : {Names{"R", "G", "B", "alpha"},
+                                  {"R", "G", "B", "a"},
+                                  {"Ci.r", "Ci.g", "Ci.b", "a"},
+                                  {"beauty.R", "beauty.G", "beauty.B", "A"},
+                                  {"rgb.R", "rgb.G", "rgb.B", "alpha.V"},
+                                  {"main.rgb.R", "main.rgb.G", "main.rgb.B", "main.Alpha.Y"},
+                                  {".R", ".G", ".B", ".A"},
+                                  {"red", "green", "blue", "ALPHA"},
+                                  {"beauty_R", "beauty_G", "beauty_B", "beauty_A"}})
         EXPECT_EQ(values(read(channels), "color"), (Values{1, 2, 3, 4})) << channels[0] << channels[3];
     // An alpha beside another colour is of that one.
     EXPECT_EQ(values(read({"R", "G", "B", "A", "diffuse.R", "diffuse.G", "diffuse.B"}), "color"),
@@ -72,10 +76,18 @@ TEST_F(NamedChannels, HaveTheirAlphaUnderAnyUsualName) {
 }
 
 TEST_F(NamedChannels, HaveTheirDepthUnderAnyUsualName) {
-    for (const auto& [red, depth] : std::initializer_list<std::pair<std::string, std::string>>{
-             {"rgba.r", "depth.z"}, {"RGBA.R", "RGBA.Z"}, {"main.beauty.R", "main.depth.Z"}, {"C.r", "Pz"},
-             {"R", "Z-depth.R"}, {"R", "zdepth.V"}, {"R", "main.depth.Z"}, {"A_Combined.red", "A_Depth.Z"},
-             {"beauty.R", "Z_Depth.Y"}, {".R", ".Z"}, {"R", "DEPTH"}}) {
+    for (const auto& [red, depth] :
+         std::initializer_list<std::pair<std::string, std::string>>{{"rgba.r", "depth.z"},
+                                                                    {"RGBA.R", "RGBA.Z"},
+                                                                    {"main.beauty.R", "main.depth.Z"},
+                                                                    {"C.r", "Pz"},
+                                                                    {"R", "Z-depth.R"},
+                                                                    {"R", "zdepth.V"},
+                                                                    {"R", "main.depth.Z"},
+                                                                    {"A_Combined.red", "A_Depth.Z"},
+                                                                    {"beauty.R", "Z_Depth.Y"},
+                                                                    {".R", ".Z"},
+                                                                    {"R", "DEPTH"}}) {
         const std::string head = red.substr(0, red.find_last_of("._") + 1);
         const Names rgb = red == "A_Combined.red" ? Names{red, head + "green", head + "blue"}
                           : red.back() == 'r'     ? Names{red, head + "g", head + "b"}

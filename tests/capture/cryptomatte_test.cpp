@@ -275,8 +275,7 @@ std::string coverage_of(const std::string& object) {
 Capture read_object(const std::filesystem::path& path, const std::string& object) {
     Sequence sequence;
     sequence.object_names = {object};
-    return reader_of(sequence, path).read(
-        1, std::vector<std::string>{"object_id", coverage_of(object)});
+    return reader_of(sequence, path).read(1, std::vector<std::string>{"object_id", coverage_of(object)});
 }
 
 TEST(CryptomatteManifest, MayLieBesideTheFile) {
@@ -325,8 +324,7 @@ TEST(Cryptomatte, OfAnotherKindThatHasTheNameIsNamed) {
     const Image image(1, 1, 4);
     std::vector<ExrOutputChannel> channels;
     for (const std::string head : {"", "CryptoObject00.", "CryptoMaterial00."})
-        for (int c = 0; c < 4; ++c)
-            channels.push_back({head + "RGBA"[c], PixelType::float32, &image, c});
+        for (int c = 0; c < 4; ++c) channels.push_back({head + "RGBA"[c], PixelType::float32, &image, c});
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 0, 0};
     options.attributes["cryptomatte/1/name"] = std::string("CryptoMaterial");

@@ -74,8 +74,7 @@ std::string warnings_of(const std::string& compression, const std::string& chann
 
 TEST(Loss, OfDataIsAWarningThatNamesTheChannels) {
     const std::string depth = warnings_of("dwab", "VRayZDepth.R", "depth");
-    EXPECT_NE(depth.find("depth is read from 'VRayZDepth.R', stored with loss (dwab)"),
-              std::string::npos)
+    EXPECT_NE(depth.find("depth is read from 'VRayZDepth.R', stored with loss (dwab)"), std::string::npos)
         << depth;
     EXPECT_NE(warnings_of("pxr24", "Z", "depth").find("pxr24"), std::string::npos);
     EXPECT_NE(warnings_of("b44", "mask.V", "mask", PixelType::half).find("b44"), std::string::npos);

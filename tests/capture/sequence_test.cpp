@@ -97,10 +97,11 @@ TEST(Sequence, IsItsNumbersHoweverTheyArePadded) {
         std::vector<const char*> names;
         Frames frames;
     };
-    for (const Case& c : {Case{{"a.998.exr", "a.999.exr", "a.1000.exr", "a.1001.exr"}, {998, 999, 1000, 1001}},
-                          Case{{"a.9998.exr", "a.9999.exr", "a.10000.exr"}, {9998, 9999, 10000}},
-                          Case{{"a.-0001.exr", "a.0000.exr", "a.0001.exr"}, {-1, 0, 1}},
-                          Case{{"a.8.exr", "a.09.exr", "a.0010.exr"}, {8, 9, 10}}}) {
+    for (const Case& c :
+         {Case{{"a.998.exr", "a.999.exr", "a.1000.exr", "a.1001.exr"}, {998, 999, 1000, 1001}},
+          Case{{"a.9998.exr", "a.9999.exr", "a.10000.exr"}, {9998, 9999, 10000}},
+          Case{{"a.-0001.exr", "a.0000.exr", "a.0001.exr"}, {-1, 0, 1}},
+          Case{{"a.8.exr", "a.09.exr", "a.0010.exr"}, {8, 9, 10}}}) {
         const TemporaryFolder folder;
         for (const char* name : c.names) write_text(folder / name, "");
         write_text(folder / "b.1.exr", "");
@@ -165,7 +166,8 @@ TEST(Sequence, NoneOfWhoseFilesIsThereIsRefusedAtOnce) {
     sequence.frames.clear();
     for (int frame = 1'000; frame < 1'001'000; ++frame) sequence.frames.push_back(frame);
     const std::string fault = capture_error([&] { require_some_file(sequence); });
-    EXPECT_NE(fault.find("no file of the frames 1000-1000999 is there; there are 1-2"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("no file of the frames 1000-1000999 is there; there are 1-2"), std::string::npos)
+        << fault;
 }
 
 TEST(Sequence, ThatIsNotThereIsACaptureError) {

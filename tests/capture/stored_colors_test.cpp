@@ -57,13 +57,13 @@ void expect_rgb(const Rgb& found, const Rgb& expected, double tolerance, const s
 }
 
 /// To Rec. 709 by Bradford's method, in double precision by numpy.linalg.solve from the published xy of each.
-const ColorMatrix kAp1ToRec709 = {1.7050510, -0.6217921, -0.0832590, -0.1302564, 1.1408048,
+const ColorMatrix kAp1ToRec709 = {1.7050510,  -0.6217921, -0.0832590, -0.1302564, 1.1408048,
                                   -0.0105485, -0.0240033, -0.1289690, 1.1529723};
-const ColorMatrix kAp0ToRec709 = {2.5216862, -1.1341310, -0.3875552, -0.2764799, 1.3727191,
+const ColorMatrix kAp0ToRec709 = {2.5216862,  -1.1341310, -0.3875552, -0.2764799, 1.3727191,
                                   -0.0962392, -0.0153781, -0.1529753, 1.1683534};
-const ColorMatrix kP3ToRec709 = {1.2249402, -0.2249402, 0, -0.0420570, 1.0420570,
+const ColorMatrix kP3ToRec709 = {1.2249402, -0.2249402, 0,          -0.0420570, 1.0420570,
                                  0,         -0.0196376, -0.0786361, 1.0982736};
-const ColorMatrix kRec2020ToRec709 = {1.6604910, -0.5876411, -0.0728499, -0.1245505, 1.1328999,
+const ColorMatrix kRec2020ToRec709 = {1.6604910,  -0.5876411, -0.0728499, -0.1245505, 1.1328999,
                                       -0.0083494, -0.0181508, -0.1005789, 1.1187297};
 const Rgb kStored = {0.4, 0.1, 0.05};
 
@@ -114,8 +114,7 @@ TEST(StoredColors, BecomeLightByTheCurveOfTheirSpace) {
     expect_rgb(in_rec709(read_with({{"oiio:ColorSpace", "sRGB"}})), through(srgb), 1e-6, "sRGB");
     expect_rgb(in_rec709(read_with({{"colorInteropID", "g22_rec709_scene"}})),
                through([](double v) { return std::pow(v, 2.2); }), 1e-6, "g22");
-    expect_rgb(in_rec709(read_with({{"oiio:ColorSpace", "Rec709"}})),
-               through([](double v) {
+    expect_rgb(in_rec709(read_with({{"oiio:ColorSpace", "Rec709"}})), through([](double v) {
                    return v < 0.081 ? v / 4.5 : std::pow((v + 0.099) / 1.099, 1 / 0.45);
                }),
                1e-6, "Rec709");

@@ -58,7 +58,8 @@ protected:
 
     static std::vector<std::string> words(std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), "run");
-        for (const char* word : {"--effect-path", "effects", "--backend", "software", "--pixel-type", "float"})
+        for (const char* word :
+             {"--effect-path", "effects", "--backend", "software", "--pixel-type", "float"})
             arguments.push_back(word);
         return arguments;
     }

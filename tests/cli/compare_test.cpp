@@ -317,7 +317,8 @@ std::vector<std::vector<std::string>> recipes_of(const std::filesystem::path& pa
         if (!line.starts_with(begin)) continue;
         std::istringstream words(line.substr(begin.size()));
         std::vector<std::string> options;
-        for (std::string word; words >> word && word != ">" && word != "||" && word != "#";) options.push_back(word);
+        for (std::string word; words >> word && word != ">" && word != "||" && word != "#";)
+            options.push_back(word);
         options.erase(options.begin(), options.begin() + 2);
         recipes.push_back(std::move(options));
     }
@@ -326,10 +327,11 @@ std::vector<std::vector<std::string>> recipes_of(const std::filesystem::path& pa
 
 TEST_F(CompareCommand, FindsInvertedNormalsByEveryRecipeOfItsPage) {
     const auto write = [&](const char* name, float sign) {
-        write_exr_file(folder_ / name, {{{"R", "G", "B", "A"}, constant(64, 64, {0.5f, 0.2f, 0.1f, 1})},
-                                        {{"Z"}, constant(64, 64, {3})},
-                                        {{"velocity.X", "velocity.Y"}, constant(64, 64, {1, 2})},
-                                        {{"normal.X", "normal.Y", "normal.Z"}, constant(64, 64, {0, 0, sign})}});
+        write_exr_file(folder_ / name,
+                       {{{"R", "G", "B", "A"}, constant(64, 64, {0.5f, 0.2f, 0.1f, 1})},
+                        {{"Z"}, constant(64, 64, {3})},
+                        {{"velocity.X", "velocity.Y"}, constant(64, 64, {1, 2})},
+                        {{"normal.X", "normal.Y", "normal.Z"}, constant(64, 64, {0, 0, sign})}});
     };
     write("a.exr", 1), write("b.exr", -1);
     const auto recipes = recipes_of(AFTERSHADE_SOURCE_DIR "/docs/compare.md");

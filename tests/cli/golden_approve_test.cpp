@@ -61,7 +61,8 @@ TEST_F(GoldenApprove, SaysBesideEachGoldenWhatMadeIt) {
     approve();
     const Json sidecar = Json::parse(read_text(sidecar_path(image("lens.color.0001"))));
     const Json environment = report()["environment"];
-    for (const char* key : {"backend", "renderer", "version", "mesa", "llvm", "cpu", "instructions", "software"})
+    for (const char* key :
+         {"backend", "renderer", "version", "mesa", "llvm", "cpu", "instructions", "software"})
         EXPECT_EQ(sidecar[key], environment[key]) << key;
     EXPECT_EQ(sidecar["command"], "aftershade golden approve golden.json");
     EXPECT_EQ(sidecar["image_hash"], file_hash(image("lens.color.0001")));

@@ -5,8 +5,8 @@
 #include <set>
 #include <thread>
 
-#include "framework/file/png_file.h"
 #include "framework/batch/approved_image.h"
+#include "framework/file/png_file.h"
 #include "tests/backends.h"
 #include "tests/cli/golden_suite.h"
 
@@ -203,8 +203,9 @@ TEST_F(GoldenRun, CountsWhatPassesByItsToleranceAlone) {
     write_text(file, sidecar.dump());
     const CommandResult result = run();
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_NE(result.err.find("1 image within tolerance, but with other bits: only the machine differs: Mesa "),
-              std::string::npos)
+    EXPECT_NE(
+        result.err.find("1 image within tolerance, but with other bits: only the machine differs: Mesa "),
+        std::string::npos)
         << result.err;
 }
 
@@ -222,7 +223,8 @@ TEST_F(GoldenRun, WarnsOfAnyBitWhereNothingThatChangesBitsHasChanged) {
     const CommandResult result = run({"--filter", "corner"});
     EXPECT_EQ(result.exit_code, 1) << result.err;
     EXPECT_NE(result.err.find("WARNING corner"), std::string::npos) << result.err;
-    EXPECT_NE(result.err.find("the capture has changed since it was approved"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("the capture has changed since it was approved"), std::string::npos)
+        << result.err;
     EXPECT_EQ(run({"--filter", "corner"}, {{"GALLIUM_OVERRIDE_CPU_CAPS", "sse2"}}).exit_code, 0)
         << "another machine has the tolerance";
 }

@@ -67,10 +67,10 @@ protected:
 
 TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
     const Json document = json({kSuzanneCapture});
-    EXPECT_EQ(
-        keys_of(document),
-        (std::set<std::string>{"file", "parts", "pixel", "profile", "layer", "layers", "layer_count", "color_space", "notes",
-                               "warnings", "roles", "depth_kind", "missing", "camera", "lights", "cryptomattes"}));
+    EXPECT_EQ(keys_of(document),
+              (std::set<std::string>{"file", "parts", "pixel", "profile", "layer", "layers", "layer_count",
+                                     "color_space", "notes", "warnings", "roles", "depth_kind", "missing",
+                                     "camera", "lights", "cryptomattes"}));
     EXPECT_TRUE(document["file"].get<std::string>().ends_with("scenes/suzanne/gbuffer_0003.exr"));
     ASSERT_EQ(document["parts"].size(), 1);
     const Json& part = document["parts"][0];
@@ -329,7 +329,8 @@ TEST_F(Inspect, WarnsOfDepthThatOverflowedAHalf) {
     ExrWriteOptions options;
     options.data_window = options.display_window = {0, 0, 63, 3};
     write_exr(folder_ / "a.exr", channels, options);
-    EXPECT_NE(json({"a.exr"})["warnings"].dump().find("is half and has 1 infinite values"), std::string::npos);
+    EXPECT_NE(json({"a.exr"})["warnings"].dump().find("is half and has 1 infinite values"),
+              std::string::npos);
 }
 
 TEST_F(Inspect, ListsSubsampledChannelsWithTheReason) {

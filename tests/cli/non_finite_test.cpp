@@ -120,15 +120,15 @@ TEST_F(NonFiniteFrame, IsFoundInDepthAndVectorsThoughDecodingReplacesIt) {
         const std::string read_as = role == std::string("depth") ? "no hit" : "no motion data";
         expect_told(run({"nothing.json", "in_0002.exr", "-o", "out.exr", "--output-roles", roles}, 0),
                     "warning: " + fault + "; read as " + read_as + " \\(--on-nan fail leaves");
-        expect_told(run({"nothing.json", "in_0002.exr", "-o", "no.exr", "--output-roles", roles, "--on-nan",
-                         "fail"},
-                        int(ExitCode::capture)),
-                    "error: " + fault + ".*left out");
+        expect_told(
+            run({"nothing.json", "in_0002.exr", "-o", "no.exr", "--output-roles", roles, "--on-nan", "fail"},
+                int(ExitCode::capture)),
+            "error: " + fault + ".*left out");
         EXPECT_FALSE(fs::exists(folder_ / "no.exr"));
-        expect_told(run({"nothing.json", "in_0002.exr", "-o", "out.exr", "--output-roles", roles, "--on-nan",
-                         "mend"},
-                        0),
-                    fault + "; read as " + read_as);
+        expect_told(
+            run({"nothing.json", "in_0002.exr", "-o", "out.exr", "--output-roles", roles, "--on-nan", "mend"},
+                0),
+            fault + "; read as " + read_as);
     }
 }
 
@@ -143,7 +143,8 @@ TEST_F(NonFiniteFrame, WhoseDepthIsNegativeIsWarnedOfOnceByARunAndByInspect) {
     const std::string out = run_aftershade({"inspect", "in_0002.exr"}, folder_.path()).out;
     EXPECT_NE(out.find("warning: " + warning), std::string::npos) << out;
     EXPECT_EQ(out.find(warning), out.rfind(warning)) << out;
-    EXPECT_EQ(run_aftershade({"inspect", "in_0001.exr"}, folder_.path()).out.find(warning), std::string::npos);
+    EXPECT_EQ(run_aftershade({"inspect", "in_0001.exr"}, folder_.path()).out.find(warning),
+              std::string::npos);
 }
 
 TEST_F(NonFiniteFrame, IsToldInAPictureToo) {

@@ -1,6 +1,6 @@
 // A limit of the address space, as farms set it: a picture or exit 7, never a crash.
-#include "tests/cli/batch_work.h"
 #include "tests/backends.h"
+#include "tests/cli/batch_work.h"
 
 namespace aftershade::test {
 namespace {

@@ -35,7 +35,7 @@ protected:
 
     CommandResult run(std::vector<std::string> more, int exit_code) {
         std::vector<std::string> arguments{"run",       "look.json", "in_####.exr",  "-o",   "out_####.exr",
-                                           "--backend", "software",    "--pixel-type", "float"};
+                                           "--backend", "software",  "--pixel-type", "float"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         CommandResult result = run_aftershade(arguments, folder_.path());
         EXPECT_EQ(result.exit_code, exit_code) << result.err;

@@ -55,7 +55,8 @@ protected:
 
     CommandResult run(std::vector<std::string> arguments, int exit_code = 0) {
         arguments.insert(arguments.begin(), "run");
-        for (const char* word : {"--effect-path", "effects", "--backend", "software", "--pixel-type", "float"})
+        for (const char* word :
+             {"--effect-path", "effects", "--backend", "software", "--pixel-type", "float"})
             arguments.push_back(word);
         CommandResult result = run_aftershade(arguments, folder_.path());
         EXPECT_EQ(result.exit_code, exit_code) << result.err;
@@ -179,7 +180,8 @@ TEST_F(RenderOptions, FramesUpToThreeAwayAreReadAsFarAsTheShotAndTheFilesGo) {
 }
 
 TEST_F(RenderOptions, GraphIsDrawn) {
-    const CommandResult result = run({"trail.json", "in_0001.exr", "-o", "a.exr", "--graph", "g.dot", "--verbose"});
+    const CommandResult result =
+        run({"trail.json", "in_0001.exr", "-o", "a.exr", "--graph", "g.dot", "--verbose"});
     const std::string dot = read_text(folder_ / "g.dot");
     EXPECT_EQ(dot.find("digraph"), 0u);
     EXPECT_NE(dot.find("trail.main"), std::string::npos);

@@ -43,7 +43,7 @@ protected:
     static std::vector<std::string> words(const std::string& look, const std::vector<std::string>& more,
                                           const std::string& outputs = "out_####.exr") {
         std::vector<std::string> words{"run",       look + ".json", "in_####.exr", "--effect-path", "effects",
-                                       "--backend", "software",       "-o",          outputs};
+                                       "--backend", "software",     "-o",          outputs};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }

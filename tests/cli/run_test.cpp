@@ -307,7 +307,8 @@ TEST_F(Run, HonoursTheBackendOfTheEnvironmentAndPutsTheOptionAboveIt) {
     };
     SKIP_WITHOUT(gpu::Backend::egl_software);
     EXPECT_EQ(backend_of({{"AFTERSHADE_BACKEND", "egl-software"}}, {}), "egl-software");
-    EXPECT_EQ(backend_of({{"AFTERSHADE_BACKEND", "no such thing"}}, {"--backend", "egl-software"}), "egl-software");
+    EXPECT_EQ(backend_of({{"AFTERSHADE_BACKEND", "no such thing"}}, {"--backend", "egl-software"}),
+              "egl-software");
     SKIP_WITHOUT(gpu::Backend::osmesa);
     EXPECT_EQ(backend_of({{"AFTERSHADE_BACKEND", "osmesa"}}, {}), "osmesa");
     EXPECT_EQ(backend_of({{"AFTERSHADE_BACKEND", "egl-software"}}, {"--backend", "osmesa"}), "osmesa");
@@ -335,7 +336,8 @@ TEST_F(Run, OffersTheOtherSoftwareBackendWhereTheOneItWasToldIsAbsent) {
         run_aftershade({"run", "view.json", "in_0001.exr", "-o", "out.exr", "--backend", "osmesa"},
                        folder_.path(), without_gl(folder_ / "hidden", {"libOSMesa"}));
     EXPECT_EQ(result.exit_code, int(ExitCode::gl));
-    EXPECT_NE(result.err.find("'egl-software' works here and draws the same bits"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("'egl-software' works here and draws the same bits"), std::string::npos)
+        << result.err;
 }
 
 TEST(Doctor, PrintsALineForEachBackend) {
@@ -402,7 +404,8 @@ TEST(Doctor, ExitsWithFourAndSaysWhyNothingIsUsable) {
     for (const auto& row : report.at("backends")) {
         EXPECT_FALSE(row.at("usable").get<bool>());
         // The libraries are there and damaged: to install them would not help.
-        EXPECT_NE(row.at("reason").get<std::string>().find("the loader refuses it"), std::string::npos) << row;
+        EXPECT_NE(row.at("reason").get<std::string>().find("the loader refuses it"), std::string::npos)
+            << row;
     }
 }
 

@@ -61,8 +61,8 @@ TEST(OutputColorSpace, IsThatOfThePixels) {
 TEST(OutputColorSpace, OfKeptChannelsIsTheStoredOne) {
     const ExrMetadata stored = output_of({{"colorInteropID", "srgb_rec709_scene"}}, {"--keep-channels"});
     EXPECT_EQ(stored.text("colorInteropID"), "srgb_rec709_scene");
-    const ExrMetadata declared = output_of({{"colorInteropID", "lin_rec709_scene"}},
-                                           {"--keep-channels", "--color-space", "p3d65"});
+    const ExrMetadata declared =
+        output_of({{"colorInteropID", "lin_rec709_scene"}}, {"--keep-channels", "--color-space", "p3d65"});
     EXPECT_EQ(declared.text("colorInteropID"), "lin_p3d65_scene");
     EXPECT_EQ(stored_primaries(declared), *color_space_primaries("p3d65"));
 }
@@ -76,7 +76,8 @@ TEST(OutputColorSpace, IsPrintedWithWhatSaysSo) {
     EXPECT_NE(inspected.out.find("warning: colorInteropID is 'lin_p3d65_scene', but acesImageContainerFlag"),
               std::string::npos)
         << inspected.out;
-    const auto document = nlohmann::json::parse(run_aftershade({"inspect", "--json", file}, folder.path()).out);
+    const auto document =
+        nlohmann::json::parse(run_aftershade({"inspect", "--json", file}, folder.path()).out);
     EXPECT_EQ(document.at("color_space").at("name"), "p3d65");
     EXPECT_EQ(document.at("color_space").at("known_by"), "colorInteropID");
     const CommandResult explained = run_on(folder, {"--explain", "-o", (folder / "o.exr").string()});

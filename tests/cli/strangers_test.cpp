@@ -110,10 +110,9 @@ TEST_P(PluginThat, CostsItsFrameAtMost) {
     write_text(folder_ / "home/victim.txt", "mine");
     std::vector<std::string> options{"--plugin-path", kCases, "--set", "graded.what=" + behaviour.what};
     options.insert(options.end(), behaviour.options.begin(), behaviour.options.end());
-    const CommandResult result =
-        run(options, {{"SECRET_TOKEN", "secret"},
-                      {"HOME", (folder_ / "home").string()},
-                      {"MESA_SHADER_CACHE_DIR", (folder_ / "mesa").string()}});
+    const CommandResult result = run(options, {{"SECRET_TOKEN", "secret"},
+                                               {"HOME", (folder_ / "home").string()},
+                                               {"MESA_SHADER_CACHE_DIR", (folder_ / "mesa").string()}});
     EXPECT_EQ(read_text(folder_ / "home/victim.txt"), "mine");
     EXPECT_EQ(contents(folder_ / "home").size(), 1u) << "a file was made";
     if (behaviour.message.empty()) {
@@ -257,7 +256,8 @@ TEST_F(Strangers, ALoopThatTheDriverEndedIsAnErrorOfTheAuditAndTheCheck) {
     write_shader("endless", "while (c < 1.0e30) c = max(c, 1.0) + 0.0 * c;");
     const CommandResult plain = run({"--pass-timeout", "3"});
     if (plain.exit_code != 0) {
-        EXPECT_TRUE(has(plain.err, "the GL driver did not finish within 3 s .* drawing pass 'main'")) << plain.err;
+        EXPECT_TRUE(has(plain.err, "the GL driver did not finish within 3 s .* drawing pass 'main'"))
+            << plain.err;
         GTEST_SKIP() << "this llvmpipe ends no loop";
     }
     const CommandResult audit = run({"--audit"});
@@ -280,7 +280,8 @@ TEST_F(Strangers, LoopsThatEndByThemselvesPassTheAudit) {
                  "for (int i = 0; i < 40000; ++i) c += 1.0e-6;\n"
                  "FOR(i, 30000) c += 1.0e-6;",
                  "#define FOR(i, n) for (int i = 0; i < n; ++i)\n");
-    const float before = ExrFile(folder_ / "in_0001.exr").read_floats(0, std::vector<std::string>{"R"}).at(3, 3, 0);
+    const float before =
+        ExrFile(folder_ / "in_0001.exr").read_floats(0, std::vector<std::string>{"R"}).at(3, 3, 0);
     const CommandResult beyond = run({"--audit"});
     if (beyond.exit_code == 0) {
         EXPECT_NEAR(red(), before + 0.07f, 2e-3f) << "the audit passes what is whole";

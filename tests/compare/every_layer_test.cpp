@@ -157,12 +157,14 @@ TEST_F(EveryLayer, OfColoursIsComparedWhereOneOfThemIsSubsampled) {
         const Comparison comparison = compared();
         ASSERT_EQ(labels(comparison), Texts{"RGB"});
         EXPECT_EQ(comparison.verdict, Verdict::failure);
-        EXPECT_EQ(comparison.layers[0].differences.failing.count, std::uint64_t(channel.sampling * channel.sampling));
+        EXPECT_EQ(comparison.layers[0].differences.failing.count,
+                  std::uint64_t(channel.sampling * channel.sampling));
     }
 }
 
 TEST_F(EveryLayer, OfAnyPartIsComparedWhereOneIsSubsampled) {
-    const std::vector<Part> reference = {{"a", "", {{"R", {1}}, {"Z", {1}}}}, {"b", "", {{"V", {1, 2}}, {"W", {1}}}}};
+    const std::vector<Part> reference = {{"a", "", {{"R", {1}}, {"Z", {1}}}},
+                                         {"b", "", {{"V", {1, 2}}, {"W", {1}}}}};
     write("r.exr", reference);
     for (const auto& [part, name] : {std::pair{0, "Z"}, {1, "V"}, {1, "W"}}) {
         std::vector<Part> test = reference;
@@ -235,8 +237,9 @@ TEST_F(EveryLayer, ThatFitsTwoOthersIsNamedAndNotTheSame) {
     write("t.exr", PartChannels{{"R", {1}}});
     const Comparison comparison = compared();
     EXPECT_EQ(comparison.verdict, Verdict::different_size);
-    EXPECT_EQ(comparison.faults, (Texts{"part 'a' is only in the reference", "part 'b' is only in the reference",
-                                        "the test image has one part, the other has 2"}));
+    EXPECT_EQ(comparison.faults,
+              (Texts{"part 'a' is only in the reference", "part 'b' is only in the reference",
+                     "the test image has one part, the other has 2"}));
 }
 
 TEST_F(EveryLayer, OfAPartHasTheLimitsOfEitherFilesName) {
@@ -257,7 +260,8 @@ TEST_F(EveryLayer, OfAPartHasTheLimitsOfEitherFilesName) {
 }
 
 /// A tiled picture of one colour, with or without smaller levels.
-void write_tiles(const fs::path& path, Imf::LevelMode mode, const std::map<std::string, float>& numbers = {}) {
+void write_tiles(const fs::path& path, Imf::LevelMode mode,
+                 const std::map<std::string, float>& numbers = {}) {
     Imf::Header header(kWidth, kHeight);
     header.channels().insert("R", Imf::Channel(Imf::FLOAT));
     header.setTileDescription(Imf::TileDescription(4, 4, mode));
@@ -270,8 +274,8 @@ void write_tiles(const fs::path& path, Imf::LevelMode mode, const std::map<std::
     Imf::TiledOutputFile file(path.c_str(), header);
     const std::vector<float> pixels(std::size_t(kWidth) * kHeight, 0.5f);
     Imf::FrameBuffer frame;
-    frame.insert("R", Imf::Slice(Imf::FLOAT, const_cast<char*>(reinterpret_cast<const char*>(pixels.data())), 4,
-                                 4 * kWidth));
+    frame.insert("R", Imf::Slice(Imf::FLOAT, const_cast<char*>(reinterpret_cast<const char*>(pixels.data())),
+                                 4, 4 * kWidth));
     file.setFrameBuffer(frame);
     for (int level = 0; level < file.numLevels(); ++level)
         file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);

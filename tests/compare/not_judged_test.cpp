@@ -20,12 +20,13 @@ protected:
         const auto write = [&](const char* name, float sign) {
             Image ids(8, 8, 1, ComponentType::uint32);
             std::ranges::fill(ids.uints(), sign > 0 ? 1u : 2u);
-            test::write_exr_file(folder_ / name, {{{"R", "G", "B"}, constant(8, 8, {0.5f, 0.2f, 0.1f})},
-                                                  {{"A"}, constant(8, 8, {sign > 0 ? 1.0f : 0.0f})},
-                                                  {{"Z"}, constant(8, 8, {3 + sign})},
-                                                  {{"normal.X", "normal.Y", "normal.Z"}, constant(8, 8, {0, 0, sign})},
-                                                  {{"velocity.X", "velocity.Y"}, constant(8, 8, {25 * sign, 0})},
-                                                  {{"object_id.I"}, std::move(ids)}});
+            test::write_exr_file(folder_ / name,
+                                 {{{"R", "G", "B"}, constant(8, 8, {0.5f, 0.2f, 0.1f})},
+                                  {{"A"}, constant(8, 8, {sign > 0 ? 1.0f : 0.0f})},
+                                  {{"Z"}, constant(8, 8, {3 + sign})},
+                                  {{"normal.X", "normal.Y", "normal.Z"}, constant(8, 8, {0, 0, sign})},
+                                  {{"velocity.X", "velocity.Y"}, constant(8, 8, {25 * sign, 0})},
+                                  {{"object_id.I"}, std::move(ids)}});
         };
         write("r.exr", 1);
         write("t.exr", -1);
@@ -95,7 +96,8 @@ TEST_F(NotJudged, IsCoverageWithALimitOfOneAndAnythingByATwofoldRelativeOne) {
 
 TEST_F(NotJudged, AreLayersOfTheRoleIgnore) {
     CompareRules rules;
-    for (const char* label : {"A", "Z", "normal.XYZ", "velocity.XY", "object_id.I"}) rules.roles[label] = std::nullopt;
+    for (const char* label : {"A", "Z", "normal.XYZ", "velocity.XY", "object_id.I"})
+        rules.roles[label] = std::nullopt;
     const Comparison comparison = compared(rules);
     EXPECT_EQ(comparison.verdict, Verdict::same);
     EXPECT_EQ(comparison.not_judged().size(), 5u);

@@ -93,9 +93,12 @@ TEST(PixelDifferences, FailOnlyWhereARelativeLimitIsExceededTooAsIdiffSays) {
         double fail, relative;
         std::uint64_t failing;  ///< by idiff 2.4.7's exit code
     };
-    for (const Case& c : {Case{98, 98.0625f, 0.004, 0, 1}, {98, 98.0625f, 0.004, 0.001, 0},
-                          {98, 98.0625f, 0.004, 0.0005, 1}, {98, 98.0625f, 0.1, 0.0005, 0},
-                          {0.5f, 0.51f, 0.004, 0.001, 1}, {0.5f, 0.51f, 0.004, 0.03, 0},
+    for (const Case& c : {Case{98, 98.0625f, 0.004, 0, 1},
+                          {98, 98.0625f, 0.004, 0.001, 0},
+                          {98, 98.0625f, 0.004, 0.0005, 1},
+                          {98, 98.0625f, 0.1, 0.0005, 0},
+                          {0.5f, 0.51f, 0.004, 0.001, 1},
+                          {0.5f, 0.51f, 0.004, 0.03, 0},
                           {0.5f, 0.51f, 0.004, 0.015, 1}}) {
         DifferenceRules rules;
         rules.fail = rules.warn = c.fail, rules.fail_relative = c.relative, rules.hard_fail = 1e-3;

@@ -15,7 +15,8 @@ using test::png_number;
 
 class ComparePng : public testing::Test {
 protected:
-    void write(const char* name, const Image& image, const std::string& type = "", const std::string& data = "") {
+    void write(const char* name, const Image& image, const std::string& type = "",
+               const std::string& data = "") {
         const std::string png = encode_png("", image);
         test::write_text(folder_ / name, type.empty() ? png : test::png_with_chunk(png, type, data));
     }

@@ -41,9 +41,12 @@ std::string icc_profile(const std::string& curve, bool exchanged = false) {
     };
     const std::string red = xyz(0.4361, 0.2225, 0.0139), green = xyz(0.3851, 0.7169, 0.0971),
                       blue = xyz(0.1431, 0.0606, 0.7141);
-    const std::vector<std::pair<std::string, std::string>> tags = {
-        {"rXYZ", exchanged ? blue : red}, {"gXYZ", green}, {"bXYZ", exchanged ? red : blue},
-        {"rTRC", curve},                  {"gTRC", curve}, {"bTRC", curve}};
+    const std::vector<std::pair<std::string, std::string>> tags = {{"rXYZ", exchanged ? blue : red},
+                                                                   {"gXYZ", green},
+                                                                   {"bXYZ", exchanged ? red : blue},
+                                                                   {"rTRC", curve},
+                                                                   {"gTRC", curve},
+                                                                   {"bTRC", curve}};
     std::string table = png_number(std::uint32_t(tags.size())), data;
     for (const auto& [name, tag] : tags) {
         table += name + png_number(std::uint32_t(132 + 12 * tags.size() + data.size())) +
@@ -107,9 +110,10 @@ TEST(PngColor, NamesWhatIsNotSrgb) {
     EXPECT_EQ(color_of({{"cICP", {9, 16, 0, 1}}}).space, "cICP 9 16 0 1");
     EXPECT_EQ(color_of({{"cHRM", kWide}}).space,
               "primaries 0.7080 0.2920 0.1700 0.7970 0.1310 0.0460 0.3127 0.3290");
-    for (const std::string& profile :
-         {icc_profile(power(2.2), true), icc_profile(power(1.8)), icc_profile(power(1)), std::string("no profile")})
-        EXPECT_TRUE(color_of({{"iCCP", iccp(profile)}}).space.starts_with("ICC profile 'my screen' (checksum "));
+    for (const std::string& profile : {icc_profile(power(2.2), true), icc_profile(power(1.8)),
+                                       icc_profile(power(1)), std::string("no profile")})
+        EXPECT_TRUE(
+            color_of({{"iCCP", iccp(profile)}}).space.starts_with("ICC profile 'my screen' (checksum "));
     EXPECT_NE(color_of({{"iCCP", iccp(icc_profile(power(1.8)))}}).space,
               color_of({{"iCCP", iccp(icc_profile(power(1)))}}).space);
     EXPECT_EQ(color_of({{"gAMA", kGamma1}}).gamma, 1.0);
@@ -130,7 +134,8 @@ TEST(PngColor, TakesTheStrongerChunk) {
 
 TEST(PngColor, OfDamagedChunksIsNoFault) {
     std::string profile = iccp(icc_profile(srgb_table()));
-    for (std::size_t bytes = 0; bytes < profile.size(); bytes += 7) color_of({{"iCCP", profile.substr(0, bytes)}});
+    for (std::size_t bytes = 0; bytes < profile.size(); bytes += 7)
+        color_of({{"iCCP", profile.substr(0, bytes)}});
     std::string plain = icc_profile(srgb_table());
     for (std::size_t at = 128; at < plain.size() && at < 260; ++at) {
         std::string damaged = plain;

@@ -54,7 +54,8 @@ TEST(PngFile, StoresThePixelAspectWherePixelsAreNotSquare) {
     EXPECT_EQ(encode_png("a", image, {}, {.pixel_aspect = 1}), encode_png("a", image));
     // Pixels twice as wide as high are half as many along x.
     for (const float aspect : {2.0f, 0.5f, 1.4587f, 0.9f, 10.0f}) {
-        const std::optional<double> ratio = stored_density_ratio(encode_png("a", image, {}, {.pixel_aspect = aspect}));
+        const std::optional<double> ratio =
+            stored_density_ratio(encode_png("a", image, {}, {.pixel_aspect = aspect}));
         ASSERT_TRUE(ratio);
         EXPECT_NEAR(*ratio, 1 / double(aspect), 1e-5 / double(aspect));
     }
@@ -62,7 +63,8 @@ TEST(PngFile, StoresThePixelAspectWherePixelsAreNotSquare) {
     write_png(folder / "a.png", image, {}, {.pixel_aspect = 2});
     EXPECT_EQ(read_png(folder / "a.png").width(), 4);
     for (const float odd : {0.0f, -1.0f, std::nanf(""), std::numeric_limits<float>::infinity()})
-        EXPECT_EQ(stored_density_ratio(encode_png("a", image, {}, {.pixel_aspect = odd})), std::nullopt) << odd;
+        EXPECT_EQ(stored_density_ratio(encode_png("a", image, {}, {.pixel_aspect = odd})), std::nullopt)
+            << odd;
 }
 
 TEST(PngFile, RoundsAndClampsAndWritesNanAsZero) {
@@ -181,10 +183,10 @@ TEST(PngFile, OfAPaletteIsRefusedWhereAPixelHasAColourThatThePaletteLacks) {
         compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(rows.data()),
                  uLong(rows.size()));
         test::write_text(folder / "p.png",
-                   "\x89PNG\r\n\x1a\n" +
-                       chunk("IHDR", png_number(3) + png_number(1) + std::string("\x8\x3\0\0\0", 5)) +
-                       chunk("PLTE", std::string("\x10\x20\x30\x40\x50\x60", 6)) +
-                       chunk("IDAT", packed.substr(0, size)) + chunk("IEND", ""));
+                         "\x89PNG\r\n\x1a\n" +
+                             chunk("IHDR", png_number(3) + png_number(1) + std::string("\x8\x3\0\0\0", 5)) +
+                             chunk("PLTE", std::string("\x10\x20\x30\x40\x50\x60", 6)) +
+                             chunk("IDAT", packed.substr(0, size)) + chunk("IEND", ""));
     };
     write(1);
     const Image image = read_png(folder / "p.png");

@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "framework/scene/scatter_points.h"
+#include "tests/backends.h"
 #include "tests/glsl/shader_table.h"
 #include "tests/reference/burley.h"
-#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/glsl/shader_table.h"
 #include "tests/reference/sequence.h"
-#include "tests/backends.h"
 
 namespace aftershade::test {
 namespace {

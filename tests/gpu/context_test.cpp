@@ -185,7 +185,8 @@ TEST(Context, RefusesWithEveryBackendTriedAndItsReason) {
 }
 
 TEST(Context, SpellsItsBackendsAsTheCommandLineDoes) {
-    for (Backend backend : {Backend::automatic, Backend::egl, Backend::egl_software, Backend::osmesa, Backend::software}) {
+    for (Backend backend :
+         {Backend::automatic, Backend::egl, Backend::egl_software, Backend::osmesa, Backend::software}) {
         EXPECT_EQ(parse_backend(backend_name(backend)), backend);
     }
     EXPECT_EQ(parse_backend("egl-software"), Backend::egl_software);

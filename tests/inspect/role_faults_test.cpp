@@ -55,8 +55,9 @@ TEST(RoleFaults, DepthUpsideDownIsToldFromOtherContradictions) {
 
 TEST(RoleFaults, MatricesOfAnotherPlaceContradictDepthAndPosition) {
     const Frame frame;
-    EXPECT_NE(find_position_fault(frame.depth, frame.position, camera_moved_back(3)).find("the camera's matrices"),
-              std::string::npos);
+    EXPECT_NE(
+        find_position_fault(frame.depth, frame.position, camera_moved_back(3)).find("the camera's matrices"),
+        std::string::npos);
 }
 
 TEST(RoleFaults, NormalsThatArePackedOrLongAreNamed) {

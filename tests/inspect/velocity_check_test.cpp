@@ -135,7 +135,8 @@ VelocitySettings suggested_for(const Pair& pair) {
 }
 
 TEST(VelocityCheck, VectorsBelowAPixelNameTheUnit) {
-    const Pair pair = read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int side) { return v / side; });
+    const Pair pair =
+        read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int side) { return v / side; });
     EXPECT_EQ(suggested_for(pair), (VelocitySettings{.unit = "uv"}));
 }
 
@@ -148,15 +149,18 @@ TEST(VelocityCheck, VectorsAroundAHalfNameTheBias) {
     EXPECT_EQ(suggested_for(read_as_px(pair, [](double v, int side) { return 0.5 - v / side; })),
               (VelocitySettings{.delta = "prev-cur", .unit = "uv", .bias = 0.5}));
     // In bytes, no motion is 128 of 255.
-    EXPECT_NEAR(suggested_for(read_as_px(pair, [](double v, int side) {
-                    return std::round(255 * (v / side + 0.5)) / 255;
-                })).bias, 128.0 / 255, 1e-4);
+    EXPECT_NEAR(
+        suggested_for(
+            read_as_px(pair, [](double v, int side) { return std::round(255 * (v / side + 0.5)) / 255; }))
+            .bias,
+        128.0 / 255, 1e-4);
     EXPECT_EQ(suggested_for(read_as_px(pair, [](double v, int) { return v + 128; })),
               (VelocitySettings{.bias = 128}));
 }
 
 TEST(VelocityCheck, VectorsThatWereCutOffAtTheEndOfTheRangeAreCounted) {
-    Pair pair = read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int side) { return v / side + 0.5; });
+    Pair pair =
+        read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int side) { return v / side + 0.5; });
     EXPECT_EQ(check_velocity(claim_velocity(pair)).at_limit, "");
     for (int i = 0; i < 20; ++i) pair.velocity_b.at(i, 0, 0) = 1;
     const VelocityCheck check = check_velocity(claim_velocity(pair));
@@ -166,8 +170,7 @@ TEST(VelocityCheck, VectorsThatWereCutOffAtTheEndOfTheRangeAreCounted) {
 }
 
 TEST(VelocityCheck, ABiasOfHalfAPixelIsNotConfirmed) {
-    const Pair pair =
-        read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int) { return v + 0.5; });
+    const Pair pair = read_as_px(make_pair(kMotion, kOther, kOther), [](double v, int) { return v + 0.5; });
     EXPECT_EQ(suggested_for(pair), (VelocitySettings{.bias = 0.5}));
 }
 

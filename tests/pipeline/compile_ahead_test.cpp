@@ -212,9 +212,10 @@ TEST_P(CompileAheadOn, EndsWhileItCompiles) {
 }
 
 TEST(CompileAheadSafety, LeavesOutTheVersionsOfMesaWhoseCompilerCrashesOnThreads) {
-    for (const char* safe : {"4.5 (Core Profile) Mesa 22.3.6", "4.5 (Core Profile) Mesa 25.0.7-2+deb13u1",
-                             "4.6 (Core Profile) Mesa 25.1.9", "4.6 (Core Profile) Mesa 26.2.6-1",
-                             "4.6 (Core Profile) Mesa 27.0.0-devel (git-0123456789)", "4.6.0 NVIDIA 580.159", ""})
+    for (const char* safe :
+         {"4.5 (Core Profile) Mesa 22.3.6", "4.5 (Core Profile) Mesa 25.0.7-2+deb13u1",
+          "4.6 (Core Profile) Mesa 25.1.9", "4.6 (Core Profile) Mesa 26.2.6-1",
+          "4.6 (Core Profile) Mesa 27.0.0-devel (git-0123456789)", "4.6.0 NVIDIA 580.159", ""})
         EXPECT_TRUE(CompileAhead::is_safe_on_threads(safe)) << safe;
     for (const char* crashing : {"4.6 (Core Profile) Mesa 25.2.0", "4.6 (Core Profile) Mesa 25.3.4-1ubuntu1",
                                  "4.6 (Core Profile) Mesa 26.0.1", "4.6 (Core Profile) Mesa 26.1.12"})

@@ -1,8 +1,8 @@
 // Fused passes against the same passes drawn one by one.
 #include <cstring>
 
-#include "tests/pipeline/effect_fixture.h"
 #include "tests/backends.h"
+#include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "framework/core/error.h"
-#include "tests/pipeline/effect_fixture.h"
 #include "tests/backends.h"
+#include "tests/pipeline/effect_fixture.h"
 
 namespace aftershade::test {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "framework/effect/registry.h"
 #include "framework/pipeline/renderer.h"
-#include "tests/synthetic_capture.h"
 #include "tests/backends.h"
+#include "tests/synthetic_capture.h"
 
 namespace aftershade::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <signal.h>
 
 /* Read at run time, so that the compiler does not see the fault. */
-extern int *volatile nowhere;
-int *volatile nowhere = 0;
+extern int* volatile nowhere;
+int* volatile nowhere = 0;
 
 /* A wild write. Its signal ends the process under a sanitizer too, which would report it and exit. */
 __attribute__((no_sanitize("address", "thread", "undefined"))) static inline void crash(void) {

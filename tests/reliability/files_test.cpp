@@ -188,7 +188,9 @@ TEST(Goldens, WithASidecarThatIsNotJsonDoNotPass) {
     RenderedImage rendered;
     rendered.name = "a.color.0001";
     rendered.file = folder / "new.exr";
-    const auto judged = [&] { return judge_image(test, rendered, GoldenSources{"hash", "", ""}, {}, nullptr); };
+    const auto judged = [&] {
+        return judge_image(test, rendered, GoldenSources{"hash", "", ""}, {}, nullptr);
+    };
     EXPECT_EQ(judged().verdict, Verdict::same) << "without a sidecar";
     write_text(folder / "a.color.0001.json", "hello");
     const GoldenImage result = judged();

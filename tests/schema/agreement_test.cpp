@@ -315,7 +315,8 @@ TEST_F(SchemaAgreement, OfAModuleChangedEverywhere) {
          {
              "is not the name of its folder|no file '",  // what lies on the disk
              "which is neither |which is not |is not a parameter|is not one of '|declared already|GLSL name",
-             "no pass (reads|writes|uses|runs) |before any pass has written it|before anything has filled the rest|"
+             "no pass (reads|writes|uses|runs) |before any pass has written it|before anything has filled "
+             "the rest|"
              "another pass has this name",
              "is not a texture of|must end in a channel|has no 'tile'|must have a 'scale'",
              "is (above|below) |has a unit, but|must rise|holds|taken already|twice|whole number|words, more "

@@ -122,8 +122,8 @@ public:
     /// Throws Error(usage) for what is not above 0 and at most 64.
     void set_scale(double scale);
 
-    /// Primaries of the colours: rec709 (at first, of arrays), acescg, ap0, rec2020, p3d65; "" for others of a
-    /// file.
+    /// Primaries of the colours: rec709 (at first, of arrays), acescg, ap0, rec2020, p3d65; "" for others of
+    /// a file.
     std::string color_space() const;
     /// Throws Error(usage) for another name.
     void set_color_space(const std::string& name);
@@ -134,8 +134,8 @@ public:
     std::vector<Light> lights() const;
     void set_lights(const std::vector<Light>& lights);
 
-    std::string profile() const;             ///< id of the profile that the frame was read by; "": arrays
-    std::string path() const;                ///< of the file; "": arrays
+    std::string profile() const;  ///< id of the profile that the frame was read by; "": arrays
+    std::string path() const;     ///< of the file; "": arrays
     /// In whole sentences: what reading chose for the caller, what may be wrong in the file, and what it has
     /// otherwise than the first frame of its sequence, which decides how all are read.
     std::vector<std::string> notes() const;
