@@ -10,9 +10,4 @@ void main() {
     float count = here.key == 0u ? 0.0 : plan_here.x;
     Gathered sums = drawn(lines, p, here, count, texelFetch(epoch, p, 0).r);
     out_estimate = vec4(mix(here.light, filled(sums), plan_here.z), count);
-#if HYBRID != HYBRID_OFF
-    out_sum = vec4(sums.light, 0.0);
-    out_share = vec4(sums.share, 0.0);
-    out_whole = vec4(sums.whole, 0.0);
-#endif
 }

@@ -2,11 +2,18 @@
 // calculation of weighted mean and variance.
 #include <luminance.glsl>
 #include "past.glsl"
+#include "tile.glsl"
 
-float exposed(vec3 light) { return exp2(param.exposure) * luminance(light); }
-
-// The history of a pixel that was not sampled: whose it is, and no moments.
-vec4 unsampled_history(uint key) { return vec4(-1.0, 0.0, 0.0, key_of(key)); }
+// Luminance in the unit whose variance target_variance is.
+float viewed(vec3 light) {
+#if TARGET == TARGET_RELATIVE
+    // Level 3 has squares of 64 px.
+    vec2 around = textureLod(tile_light, gl_FragCoord.xy * tile_light_size.zw / float(kTile), 3.0).rg;
+    return luminance(light) * around.y / max(around.x, 1e-20);
+#else
+    return exp2(param.exposure) * luminance(light);
+#endif
+}
 
 // The history after a frame whose luminance, less its control variate, was `value`.
 vec4 updated_history(vec4 past, bool known, float count, float value, uint key) {

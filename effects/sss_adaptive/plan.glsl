@@ -33,12 +33,11 @@ Plan planned(ViewLines lines, Facet here, bool inside, vec4 past, float past_eac
     bool known = inside && past.a == key_of(here.key);
     float most = float(param.max_samples), least = min(float(param.min_samples), most);
     // Without history the wanted variance is taken to be met.
-    bool counted = known && past.x >= 0.0;
-    float mean_count = counted ? past.x : 0.5 * (least + most);
-    float variance = counted ? past.y * past.y : param.target_variance;
+    float mean_count = known ? past.x : 0.5 * (least + most);
+    float variance = known ? past.y * past.y : param.target_variance;
     // A count of 0 would stay 0, whatever the variance.
     float wanted = wanted_samples(max(mean_count, 0.5), variance);
-    float each = !counted ? 0.0 : frame_of_epoch() == 0 ? max(clamp(wanted, least, most), 1e-6) : past_each;
+    float each = !known ? 0.0 : frame_of_epoch() == 0 ? max(clamp(wanted, least, most), 1e-6) : past_each;
     uvec3 hash = block_hash(uint(frame.number));
     float count = floor(clamp(wanted, least, most) + unit_float(hash.x));
     if (each > 0.0) count = taken_before(each, frame_of_epoch() + 1) - taken_before(each, frame_of_epoch());

@@ -23,9 +23,9 @@ void main() {
     Gathered sums = drawn(lines, p, here, plan_here.count, plan_here.each);
     vec3 scattered = mix(here.light, filled(sums), plan_here.scattered);
     out_epoch = vec2(plan_here.each, plan_here.count);
-    keep_moments(here, q, past, plan_here.known && past.x >= 0.0, true, plan_here.count, exposed(scattered));
+    keep_moments(here, q, past, plan_here.known, plan_here.count, viewed(scattered));
 #if GUIDING
-    Guided now = guided_light(lines, sums, here, q, plan_here.known);
+    Guided now = guided_light(p, sums, q, plan_here.known);
     keep_average(now);
     scattered = in_part(here.light, filled(now.sums), plan_here.scattered);
 #endif

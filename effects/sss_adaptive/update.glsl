@@ -2,34 +2,36 @@
 #include <scattering/facet.glsl>
 #include "moments.glsl"
 
-// `value`: the frame's luminance; past: the texture history's texel of the frame before, known: of this surface; followed: not
-// blurred. q: where it was.
-void keep_moments(Facet here, ivec2 q, vec4 past, bool known, bool followed, float count, float value) {
-#if CONTROL_VARIATE == CONTROL_VARIATE_CONSTANT
-    value -= exposed(here.light);
+// `value`: the frame's luminance; past: the texture history's texel of the frame before, known: of this surface. q: where
+// it was.
+void keep_moments(Facet here, ivec2 q, vec4 past, bool known, float count, float value) {
+#if GUIDING
+    // What the average is of: the blurred light has no noise, and moves with light and shadows.
+    value -= viewed(texelFetch(blurred, ivec2(gl_FragCoord.xy), 0).rgb);
+#elif CONTROL_VARIATE == CONTROL_VARIATE_CONSTANT
+    value -= viewed(here.light);
 #elif CONTROL_VARIATE == CONTROL_VARIATE_ONLINE
     // The control variate's factor is what followed the light best so far, Cov / Var (Xie and Olano 2021), with the moving
     // covariance matrix of the luminance after and before scattering; 1 while that before has not changed yet.
-    vec2 light = vec2(value, exposed(here.light));
+    vec2 light = vec2(value, viewed(here.light));
     vec4 moments = known ? texelFetch(covariance_prev, q, 0) : vec4(0.0, 0.0, light);
     bool varied = moments.y > 1e-6 * (1.0 + moments.w * moments.w);
     float factor = varied ? clamp(moments.x / moments.y, 0.0, 2.0) : 1.0;
     vec2 off = light - moments.zw;
     float weight = param.history_weight;
     vec4 moved = vec4((1.0 - weight) * (moments.xy + weight * off * off.y), moments.zw + weight * off);
-    out_covariance = !followed ? vec4(0.0) : count < 0.5 ? moments : moved;
+    out_covariance = count < 0.5 ? moments : moved;
     value -= factor * light.y;
 #endif
-    out_history = followed ? updated_history(past, known, count, value, here.key) : unsampled_history(here.key);
+    out_history = updated_history(past, known, count, value, here.key);
 }
 
 // Where nothing scatters.
 void keep_nothing() {
     out_history = vec4(0.0);
-#if CONTROL_VARIATE == CONTROL_VARIATE_ONLINE
-    out_covariance = vec4(0.0);
-#endif
 #if GUIDING
-    out_guided = out_guided_share = out_guided_whole = out_lit = vec4(0.0);
+    out_guided = out_guided_share = out_guided_whole = vec4(0.0);
+#elif CONTROL_VARIATE == CONTROL_VARIATE_ONLINE
+    out_covariance = vec4(0.0);
 #endif
 }

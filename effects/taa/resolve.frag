@@ -134,6 +134,27 @@ vec4 held(vec4 history, Box box, float least_weight, out float part) {
     return light_of(value, least_weight);
 }
 
+#ifdef HAS_LIGHT_CHANGE
+// Light that is shifted with its surface's change lags by less, but highlights and hard shadows in what does not scatter lag
+// as before: so many frames of history as let that be kLag of the light, and a share of the contrast of the 3 x 3 px, which
+// history is there to smooth.
+const float kLag = 0.002;
+const float kLagOfContrast = 0.02;
+
+float frames_in_change(Samples samples, vec3 change) {
+    float sum = 0.0, squares = 0.0, count = 1e-20;
+    for (int i = 0; i < 9; ++i) {
+        float value = samples.usable[i] ? luma(samples.light[i].rgb) : 0.0;
+        sum += value;
+        squares += value * value;
+        count += samples.usable[i] ? 1.0 : 0.0;
+    }
+    float mean = sum / count, contrast = sqrt(max(squares / count - mean * mean, 0.0)) / max(mean, 1e-10);
+    vec3 away = abs(change - 1.0);
+    return (kLag + kLagOfContrast * contrast) / max(max(away.r, max(away.g, away.b)), 1e-6);
+}
+#endif
+
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     Samples samples = samples_around(gl_FragCoord.xy);
@@ -142,6 +163,13 @@ void main() {
     vec4 reprojected = texelFetch(motion, p, 0);
     float frames = reprojected.z, part = 1.0;
     vec4 history = frames > 0.0 ? history_at(gl_FragCoord.xy - reprojected.xy) : current;
+#ifdef HAS_LIGHT_CHANGE
+    vec3 change = texelFetch(light_change, p, 0).rgb;
+    if (frames > 0.0 && is_light(vec4(change, 1.0))) {
+        history.rgb *= change;
+        frames = min(frames, frames_in_change(samples, change));
+    }
+#endif
 #if REJECTION != REJECTION_NONE
     if (has_current && frames > 0.0) {
         float least_weight = weight_of(history);

@@ -65,6 +65,8 @@ std::vector<ChannelRole> make_roles() {
         xy("velocity", false, "px per frame, current minus previous position, +x right, +y down"),
         xy("velocity_next", true, "px per frame, next minus current position, +x right, +y down"),
         rgb("irradiance", false, "E / pi without albedo: color = albedo * irradiance + the rest"),
+        rgb("light_change", false,
+            "light on a surface over that of the frame before; 1 where that is unknown"),
         rgb("albedo", true, "scene-linear diffuse reflectance"),
         rgb("specular", false, "scene-linear light that albedo does not colour"),
         rgb("emission", false, "scene-linear emitted light"),

@@ -3,8 +3,8 @@ import os
 
 from adaptive_bias import FRAMES, bias
 from adaptive_cost import COLUMNS, cost
-from adaptive_hybrid import hybrid
 from adaptive_light import AFTER, under_changing_light
+from adaptive_moving import first_frames, moving
 from adaptive_samples import at_equal_count, on_head, with_taa
 from family import ROOT
 from quality import WORK, table
@@ -12,7 +12,7 @@ from quality import WORK, table
 IMAGES = ROOT / "docs/images/sss"
 TEXTS = ROOT / "scripts/sss"
 # What each word of PARTS makes; the sections of those left out stay as build/quality-sss/adaptive-<word>.md has them.
-PARTS = os.environ.get("PARTS", "light count guiding hybrid bias cycles cost").split()
+PARTS = os.environ.get("PARTS", "moving light count guiding bias cycles cost").split()
 
 
 def light():
@@ -27,11 +27,16 @@ def both_biases():
             "\n" + table([f"mean of {FRAMES} frames", "mean of the picture, off by", "root mean square, of pixels", "of that noise"], modes))
 
 
+def both_motions():
+    return (table(["", "samples", "default", "fixed", "`guiding` off", "least gain on fixed", "on `guiding` off", "step"], moving()) + "\n" +
+            table(["", "`sss_separable`", "frame 1", "frame 16"], first_frames()))
+
+
 SECTIONS = {
+    "moving": both_motions,
     "light": light,
     "count": lambda: table(["controller", "samples, mean", "adaptive", "fixed", "ratio"], at_equal_count()),
     "guiding": lambda: table(["", "`taa` alone", "guiding and `taa`", "ratio"], with_taa()),
-    "hybrid": lambda: table(["", "sampled tiles", "blurred tiles", "samples, mean", "PSNR, dB", "seam, of 1/255"], hybrid(IMAGES)),
     "bias": both_biases,
     "cycles": lambda: table(["", "samples, mean", "`sss_exact`, dB"], on_head()),
     "cost": lambda: table(["", "samples, mean", "PSNR, dB", *[f"{c}, ms" for c in COLUMNS], "all, ms", "times faster"], cost()),

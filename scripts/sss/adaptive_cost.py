@@ -10,17 +10,13 @@ from techniques import psnr_db, scale_of, scatter
 
 SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
 FRAMES, SETTLED = 32, 24  # times are the least of the frames after SETTLED
-COLUMNS = {"setup": ["scatters", "scattering_tiles", "surface", "plan", "kernel", "tile_light", "tile_range", "tile_class", "tile_rows",
-                     "sampled_tiles", "row_tiles", "blurred_tiles"],
-           "pre-filtering": ["light", "light_means"],
-           "sampling": ["scatter", "gather", "gather_hybrid", "lit_pixels", "rows", "columns"],
-           "update": ["update"],
-           "combine": ["unscattered", "finish"]}
+COLUMNS = {"setup": ["scatters", "scattering_tiles", "surface", "unscattered"],
+           "blurs": ["kernel", "settings", "lit_pixels", "tile_state", "stale_rows", "stale_columns", "rows", "columns"],
+           "sampling": ["tile_light", "scatter", "gather"]}
 FIXED = ("`sss_burley`, 64 samples", "sss_burley", {"samples": 64})
 LONG = {"guiding_weight": 0.05}
-FEW = LONG | {"min_samples": 2, "target_variance": 0.004}
-WAYS = [FIXED, ("adaptive", "sss_adaptive", LONG), ("adaptive, `min_samples` 2, `target_variance` 0.004", "sss_adaptive", FEW),
-        ("the same, `hybrid` auto", "sss_adaptive", FEW | {"hybrid": "auto"})]
+FEW = LONG | {"min_samples": 2, "target_variance": 0.012}
+WAYS = [FIXED, ("adaptive", "sss_adaptive", LONG), ("adaptive, `min_samples` 2, `target_variance` 0.012", "sss_adaptive", FEW)]
 
 
 def passes_of(told, effect):
@@ -29,7 +25,6 @@ def passes_of(told, effect):
         for name, ms in frame["passes_ms"].items():
             if name.startswith(effect + "."):
                 times.setdefault(name.split(".")[1], []).append(ms)
-    if "scatter" in times: times.pop("plan", None)  # drawn for telemetry alone
     return {name: min(ms) for name, ms in times.items()}
 
 

@@ -9,7 +9,8 @@ from quality import WORK
 from sequences import run, scene_capture, scene_profile
 from techniques import psnr_db, scale_of
 
-VARIATES = ["none", "constant", "online"]
+ABSOLUTE = {"guiding": False, "target": "absolute", "target_variance": 0.001}
+WAYS = {variate: ABSOLUTE | {"control_variate": variate} for variate in ("none", "constant", "online")} | {"guiding": {}}
 FRAMES = 24
 # Frames with other light than the one before.
 CHANGES = {"light_toggle": [9, 17], "light_flash": [7, 8, 13, 14, 19, 20]}
@@ -29,9 +30,9 @@ def under_changing_light(scene, images):
     capture, profile = scene_capture(scene, f"1-{FRAMES}"), scene_profile(scene)
     reference = reference_of(scene, capture, profile)
     told, db = {}, {}
-    for variate in VARIATES:
+    for variate, params in WAYS.items():
         for chain, after in AFTER.items():
-            result = run(f"{scene}_{variate}", capture, profile, {"control_variate": variate, "guiding_weight": 0.1}, FRAMES,
+            result = run(f"{scene}_{variate}", capture, profile, params, FRAMES,
                          taps=("history",), after=after, roles="color", telemetry=True)
             where = result["history"][0][..., 3] > 0
             scale = scale_of(reference[1], where)
@@ -51,7 +52,7 @@ def sampling_ms(told):
 
 def rows_of(scene, told, db):
     rows = []
-    for variate in VARIATES:
+    for variate in WAYS:
         means, ms = samples_of(told[variate]), sampling_ms(told[variate])
         row = [variate, f"{max(means[6:]):.1f}", f"{numpy.mean(means[6:]):.1f}", f"{numpy.median(ms[10:]):.0f}"]
         for chain in AFTER:
@@ -60,7 +61,7 @@ def rows_of(scene, told, db):
                 row.append("" if variate == "none" else f"{max(loss):.1f}")
         rows.append(row)
         print(scene, row, flush=True)
-    for variate in VARIATES[:2]:
+    for variate in ("none", "guiding"):
         for chain in AFTER:
             print(scene, variate, chain, " ".join(f"{v:.1f}" for v in db[variate, chain]), flush=True)
     return rows
@@ -69,7 +70,7 @@ def rows_of(scene, told, db):
 def plot(scene, told, db, images):
     figure, axes = pyplot.subplots(3, 1, figsize=(5.4, 6.6), sharex=True)
     frames = range(1, FRAMES + 1)
-    for variate in VARIATES:
+    for variate in WAYS:
         style = {"marker": "o", "markersize": 2.5, "linewidth": 1.2, "label": variate}
         axes[0].plot(frames, samples_of(told[variate]), **style)
         axes[1].plot(frames[1:], sampling_ms(told[variate])[1:], **style)

@@ -24,7 +24,7 @@ def at_equal_count():
     frames, rows = 24, []
     sequence = still(file, "native", frames)
     for controller in ("ratio", "sqrt", "difference"):
-        result = run(f"equal_{controller}", sequence, profile, {"controller": controller, "guiding": False, "prefilter": False,
+        result = run(f"equal_{controller}", sequence, profile, {"controller": controller, "guiding": False, "prefilter": False, "target": "absolute",
                                                                 "target_variance": 0.0003, "max_samples": 256}, frames)
         where = result["history"][-1][..., 3] > 0
         mean = float(result["estimate"][-8:, ..., 3][:, where].mean())
@@ -45,7 +45,7 @@ def with_taa():
     sequence = still(file, "native", frames)
     after = [{"effect": "sss_combine"}, {"effect": "taa", "params": {"static_frames": 10}}]
     for label, params in (("`taa` alone", {"guiding": False}), ("guiding and `taa`", {"guiding": True, "guiding_weight": 0.1})):
-        color = run(f"taa_{params['guiding']}", sequence, profile, params | {"target_variance": 0.001}, frames, after=after, taps=(),
+        color = run(f"taa_{params['guiding']}", sequence, profile, params, frames, after=after, taps=(),
                     roles="color")["color"]
         deviations[label] = (color[frames // 2:] @ LUMINANCE).std(axis=0)
     light = read_exr(file, [f"irradiance.{c}" for c in RGB]) @ LUMINANCE
@@ -71,8 +71,8 @@ def on_head():
     exact = scatter(sequence, WORK / "head_exact_still.exr", EXACT, HEAD_PROFILE, {"object_ids": [1]}, ["--frames", "1"])
     fixed = run("head_fixed", sequence, HEAD_PROFILE, {"samples": 64}, frames, "sss_burley", ())["irradiance"]
     rows.append(["`sss_burley`, 64 samples", "64", f"{psnr_db(exact, fixed[-1], where, scale):.2f}"])
-    for label, params in (("no guiding, target 0.001", {"guiding": False}), ("guiding, target 0.001", {}),
-                          ("guiding, target 0.0005", {"target_variance": 0.0005}), ("guiding, target 0.0003", {"target_variance": 0.0003})):
+    for label, params in (("no guiding, target 0.003", {"guiding": False}), ("guiding, target 0.003", {}),
+                          ("guiding, target 0.001", {"target_variance": 0.001}), ("guiding, target 0.0003", {"target_variance": 0.0003})):
         result = run("head", sequence, HEAD_PROFILE, params, frames)
         mean = result["estimate"][-1][..., 3][where].mean()
         rows.append([label, f"{mean:.1f}", f"{psnr_db(exact, result['irradiance'][-1], where, scale):.2f}"])
