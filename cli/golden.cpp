@@ -59,9 +59,15 @@ void remove_old_reports(const GoldenOptions& options) {
 /// cause.
 void write_early_end(const GoldenOptions& options, const std::string& message, int exit_code) {
     const GoldenEarlyEnd end{options.suite, message, exit_code};
-    try {
-        if (!options.junit.empty() && may_replace(options.junit, "<?xml"))
-            write_text_file(options.junit, early_junit_of(end));
+    const auto warned = [](const auto& write) {
+        try {
+            write();
+        } catch (const std::exception& error) {
+            std::cerr << "aftershade: warning: " << error.what() << "\n";
+        }
+    };
+    // First, since the file of --junit may lie in the folder of --report.
+    warned([&] {
         const fs::path report(options.report), json = report / "report.json", page = report / "index.html";
         if (options.report.empty() || !may_replace(json, "{\n  \"aftershade\"") || !may_replace(page, "<!"))
             return;
@@ -71,9 +77,11 @@ void write_early_end(const GoldenOptions& options, const std::string& message, i
         write_text_file(
             json, early_json_of(end).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
         write_text_file(page, early_page_of(end));
-    } catch (const std::exception& error) {
-        std::cerr << "aftershade: warning: " << error.what() << "\n";
-    }
+    });
+    warned([&] {
+        if (!options.junit.empty() && may_replace(options.junit, "<?xml"))
+            write_text_file(options.junit, early_junit_of(end));
+    });
 }
 
 /// The code that this verb ends with.

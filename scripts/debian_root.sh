@@ -3,8 +3,8 @@
 #
 #   fresh_root FOLDER [SUITE]   makes FOLDER/root from a fresh copy of FOLDER/pristine-SUITE, which is kept; sets $root.
 #                               SUITE: bookworm unless given
-#                               HIDE, as in HIDE='libEGL*': names of libraries that no package may install there, as where
-#                               a distribution has none
+#                               HIDE='libOSMesa*' or 'libEGL*': no package may install libraries of such names there; in
+#                               place of EGL there is Debian's libosmesa6
 #   leave_root                  unmounts what fresh_root mounted; for the trap EXIT
 #   in_root COMMAND...          runs it there
 fresh_root() {
@@ -26,6 +26,7 @@ fresh_root() {
     mount -t proc proc "$root/proc"
     mkdir -p "$root/dev/shm"
     mount -t tmpfs tmpfs "$root/dev/shm"
+    [ "${HIDE:-}" != 'libEGL*' ] || in_root sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends libosmesa6'
 }
 
 leave_root() {

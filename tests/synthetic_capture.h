@@ -64,7 +64,6 @@ inline void set_surface(Capture& capture, int x, int y, Rgb color, float alpha, 
     images["depth"].at(x, y, 0) = depth_m;
     set_rgb(images["albedo"], x, y, color);
     set_rgb(images["irradiance"], x, y, {irradiance, irradiance, irradiance});
-    set_rgb(images["light_change"], x, y, {1, 1, 1});
     set_rgb(images["normal"], x, y, {0, 0, 1});
     const float finite_m = std::isfinite(depth_m) ? depth_m : 0;
     set_rgb(images["position"], x, y, {float(x), float(y), -finite_m});

@@ -7,6 +7,7 @@
 
 #include "framework/image/color_space.h"
 #include "framework/image/role.h"
+#include "framework/image/step_role.h"
 
 namespace aftershade {
 
@@ -22,6 +23,12 @@ grammar::Pattern aov_pattern() {
 
 grammar::Form role_form() {
     return grammar::name_of(role_names(), "a role", aov_pattern());
+}
+
+grammar::Form step_role_form() {
+    std::vector<std::string> names = role_names();
+    names.emplace_back(kLightChangeRole);
+    return grammar::name_of(std::move(names), "a role", aov_pattern());
 }
 
 grammar::Form color_space_form() {

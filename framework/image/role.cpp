@@ -7,6 +7,7 @@
 
 #include "framework/core/document.h"
 #include "framework/core/text.h"
+#include "framework/image/step_role.h"
 
 namespace aftershade {
 
@@ -65,8 +66,6 @@ std::vector<ChannelRole> make_roles() {
         xy("velocity", false, "px per frame, current minus previous position, +x right, +y down"),
         xy("velocity_next", true, "px per frame, next minus current position, +x right, +y down"),
         rgb("irradiance", false, "E / pi without albedo: color = albedo * irradiance + the rest"),
-        rgb("light_change", false,
-            "light on a surface over that of the frame before; 1 where that is unknown"),
         rgb("albedo", true, "scene-linear diffuse reflectance"),
         rgb("specular", false, "scene-linear light that albedo does not colour"),
         rgb("emission", false, "scene-linear emitted light"),
@@ -93,6 +92,16 @@ std::span<const ChannelRole> channel_roles() {
 std::optional<ChannelRole> find_role(std::string_view name) {
     for (const ChannelRole& role : roles())
         if (role.name == name) return role;
+    if (name == kLightChangeRole)
+        return ChannelRole{std::string(name),
+                           3,
+                           ComponentType::float32,
+                           true,
+                           0,
+                           layer(std::string(name), "RGB"),
+                           PixelType::half,
+                           "light on a surface over that of the frame before; 1 where that is unknown",
+                           RoleKind::coverage};
     if (is_coverage_role(name))
         return ChannelRole{std::string(name),
                            1,

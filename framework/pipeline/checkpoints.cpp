@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/capture/frame_range.h"
+#include "framework/core/atomic_file.h"
 #include "framework/core/error.h"
 #include "framework/core/side_file.h"
 #include "framework/pipeline/history_file.h"
@@ -84,17 +85,8 @@ void Checkpoints::drop_all() const {
     if (folder().empty()) return;
     std::error_code failure;
     for (const std::size_t place : saved()) fs::remove(file(frames_[place]), failure);
-    // What kills left of some that were being written: ".0010.history.<pid>-<n>.tmp".
-    const FramePattern name(kName);
-    std::vector<fs::path> torn;
-    for (const auto& entry : fs::directory_iterator(folder(), failure)) {
-        const std::string text = entry.path().filename().string();
-        const std::size_t end = text.find(".history.");
-        if (!text.starts_with('.') || !text.ends_with(".tmp") || end == std::string::npos) continue;
-        const auto frame = name.match(text.substr(1, end - 1) + ".history");
-        if (frame && places_.contains(*frame)) torn.push_back(entry.path());
-    }
-    for (const fs::path& path : torn) fs::remove(path, failure);
+    // What kills left; what other workers are writing stays.
+    remove_stale_temporaries(folder());
     // The folders go where nothing of another run is in them.
     rmdir((base_ / name_).c_str());
     rmdir((base_ / name_).parent_path().c_str());

@@ -133,6 +133,11 @@ TEST_F(GoldenMessages, OfAnEarlierRunDoNotStayWhereOneEndsEarly) {
     expect_early(reported(), 64, "stepz");
 }
 
+TEST_F(GoldenMessages, OfAnEarlyEndMayLieInTheFolderOfTheReport) {
+    EXPECT_EQ(run({"--filter", "lnes", "--report", "fresh", "--junit", "fresh/junit.xml"}).exit_code, 64);
+    EXPECT_NE(read_text(folder_ / "fresh/junit.xml").find("errors=\"1\""), std::string::npos);
+}
+
 TEST_F(GoldenMessages, OfAnEarlyEndReplaceNoOtherFile) {
     write_text(folder_ / "golden.json", "{ \"aftershade\": 1, \"cases\": [ 1 ] }");
     const std::string suite = read_text(folder_ / "golden.json");

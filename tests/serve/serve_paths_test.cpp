@@ -159,5 +159,16 @@ TEST_F(ServePaths, OfAUsedLookThatChangesLaterAreRefusedByTheProcessThatDrawsToo
         << picture.body;
 }
 
+/// A profile that an effect's manifest names is read with the first look that has the effect.
+TEST_F(ServePaths, OfTheProfileThatAnEffectNamesStayNamedInLaterLooks) {
+    start_in_folders();
+    ASSERT_EQ(edit(text(R"({ "effect": "sss_burley" })")).status, 200);
+    ASSERT_EQ(edit(text(R"({ "effect": "sss_burley", "params": { "samples": 8 } })")).status, 200);
+    get("/api/picture?frame=1");
+    kill(drawer(), SIGKILL);
+    const Answer picture = get("/api/picture?frame=1");
+    EXPECT_EQ(picture.status, 200) << picture.body;
+}
+
 }  // namespace
 }  // namespace aftershade::test

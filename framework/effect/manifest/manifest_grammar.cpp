@@ -70,7 +70,7 @@ Block input_block() {
         .doc = "An image that the effect reads.",
         .keys =
             {required(
-                 "role", role_form(),
+                 "role", step_role_form(),
                  "`aov:<name>` takes any image of floats that a look wires to it, an earlier step's texture "
                  "too, in its own size: read `name_size`."),
              optional("optional", boolean(),
@@ -117,7 +117,7 @@ Block output_block() {
     return {.name = "output",
             .thing = "output '{}'",
             .doc = "An image that the effect outputs; a pass must write it.",
-            .keys = {required("role", role_form(), "Role of the image."),
+            .keys = {required("role", step_role_form(), "Role of the image."),
                      optional("doc", text(), "One sentence.")}};
 }
 
