@@ -149,7 +149,9 @@ std::optional<ScatteringProfile> parse_scattering_profile(const Node& node, cons
     }
     const bool is_path = node.string.ends_with(".json");
     const fs::path path = is_path ? folder / node.string : shipped_folder() / (node.string + ".json");
-    if (const std::string reason = FileRule::why_not(path); !reason.empty()) {
+    // A plain name is of a shipped file, which every document may name.
+    const std::string reason = is_snake_case(node.string) ? "" : FileRule::why_not(path);
+    if (!reason.empty()) {
         diagnostics.error(node.place, label + ": '" + node.string + "' " + reason);
         return std::nullopt;
     }

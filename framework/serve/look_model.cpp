@@ -81,15 +81,16 @@ std::string LookModel::why_not(const std::filesystem::path& file) const {
 /// A text on disk is of who has the disk, and not of a page: its files may be named from then on.
 LookModel::Binding LookModel::binding_of(const std::string& text, Origin origin) {
     Binding binding;
+    std::vector<std::string> files;
     const FileRule rule([&](const std::filesystem::path& file) {
         if (origin == Origin::disk) named_on_disk_.insert(resolved_path(file));
         std::string reason = why_not(file);
-        if (reason.empty()) named_.insert(resolved_path(file).string());
+        if (reason.empty()) files.push_back(resolved_path(file).string());
         else if (binding.refused.empty()) binding.refused = "'" + file.string() + "' " + reason;
         return reason;
     });
     binding.bound = bind_text(text, path_, effects_, binding.faults);
-    if (binding.bound) binding.bound->files = {named_.begin(), named_.end()};
+    if (binding.bound) binding.bound->files = std::move(files);
     return binding;
 }
 

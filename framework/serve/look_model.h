@@ -28,7 +28,7 @@ struct BoundText {
     std::shared_ptr<EffectRegistry> effects;  ///< owns the manifests of `pipeline`
     Look look;
     Pipeline pipeline;
-    std::vector<std::string> files{};  ///< that it or one before it names, with links followed
+    std::vector<std::string> files{};  ///< that it names, with links followed
     std::uint64_t revision = 0;
     std::uint64_t effects_revision = 0;
 };
@@ -112,8 +112,6 @@ private:
 
     mutable std::mutex mutex_;                       // of what follows
     std::set<std::filesystem::path> named_on_disk_;  // resolved
-    // By any text, resolved: what effects name is read once, for the first look that has the effect.
-    std::set<std::string> named_;
     std::shared_ptr<EffectRegistry> effects_;
     std::uint64_t effects_revision_ = 1;
     std::vector<std::string> texts_;
