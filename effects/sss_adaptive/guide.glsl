@@ -4,8 +4,8 @@
 #include <scattering/gathered.glsl>
 #include "past.glsl"
 
-// Frames that the blurs stand for where there is no history: they are off by less than the samples of one frame, as
-// docs/quality-sss-adaptive.md has it.
+// Frames of samples that the blurs stand for where there is no history. With 9 the first frame is nearer than the blurs on all
+// three stills of docs/quality-sss-adaptive.md.
 const float kFramesOfBlur = 9.0;
 
 // What a pixel that scatters comes to after this frame.

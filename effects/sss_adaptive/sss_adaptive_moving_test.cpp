@@ -97,7 +97,7 @@ double decibels(double better, double worse) {
     return 20 * std::log10(worse / better);
 }
 
-Image exact_of(const Motion& motion, int frame) {
+Image reference_of(const Motion& motion, int frame) {
     static std::map<std::pair<std::string, int>, Image> made;
     static LookRunner look(step("sss_burley", R"("samples": 2048)"), gpu::Backend::software);
     const auto [at, fresh] = made.try_emplace({motion.name, frame});
@@ -128,11 +128,13 @@ TEST(SssAdaptiveMoving, IsNearerThanAsManyFixedSamplesAndThanEachFrameAlone) {
             const double count = mean_count(result);
             const Image fixed =
                 scattered(step("sss_burley", "\"samples\": " + std::to_string(std::lround(count))), capture);
-            const Image exact = exact_of(motion, frame);
-            const double own = error(result.images.at("irradiance"), exact);
-            EXPECT_GT(decibels(own, error(fixed, exact)), 1.5) << "frame " << frame << ", samples " << count;
+            const Image reference = reference_of(motion, frame);
+            const double own = error(result.images.at("irradiance"), reference);
+            EXPECT_GT(decibels(own, error(fixed, reference)), 1.5)
+                << "frame " << frame << ", samples " << count;
             if (mean_count(estimate) > 1.5 * count) continue;
-            EXPECT_GT(decibels(own, error(estimate.images.at("irradiance"), exact)), 0) << "frame " << frame;
+            EXPECT_GT(decibels(own, error(estimate.images.at("irradiance"), reference)), 0)
+                << "frame " << frame;
         }
     }
 }
@@ -141,11 +143,11 @@ TEST(SssAdaptiveMoving, IsNoWorseThanTheTwoBlursInItsFirstFrameAndMuchBetterInIt
     const Motion still{"at rest",
                        [](double x, double y, int c, int) { return bar(x + y / 4, 50) * (1 - 0.2 * c); }};
     LookRunner look(step("sss_adaptive"), gpu::Backend::software);
-    const Image exact = exact_of(still, 1),
+    const Image reference = reference_of(still, 1),
                 blurred = scattered(step("sss_separable"), captured(still.light, 1));
     for (int frame = 1; frame <= 16; ++frame) {
         const Image image = look.run(captured(still.light, frame)).images.at("irradiance");
-        const double gained = decibels(error(image, exact), error(blurred, exact));
+        const double gained = decibels(error(image, reference), error(blurred, reference));
         if (frame == 1) {
             EXPECT_GE(gained, 0);
         } else if (frame == 16) {
@@ -170,7 +172,7 @@ TEST(SssAdaptiveMoving, HasNoBandsWhereSmoothLightMoves) {
     for (int frame = 1; frame <= 13; ++frame) {
         const Image image = look.run(captured(wave.light, frame)).images.at("irradiance");
         if (frame < 9) continue;
-        EXPECT_LT(largest_step(image), 1.3 * largest_step(exact_of(wave, frame))) << "frame " << frame;
+        EXPECT_LT(largest_step(image), 1.3 * largest_step(reference_of(wave, frame))) << "frame " << frame;
     }
 }
 
@@ -209,12 +211,12 @@ TEST(SssAdaptiveMoving, LosesLittleOfItToTaa) {
             const Image step_alone = alone.run(capture).images.at("color"),
                         with_taa = followed.run(capture).images.at("color");
             if (frame < 9) continue;
-            Image exact = exact_of(motion, frame);
+            Image reference = reference_of(motion, frame);
             for (int y = 0; y < kHeight; ++y)
                 for (int x = 0; x < kWidth; ++x)
-                    for (int c = 0; c < 3; ++c) exact.at(x, y, c) *= 0.5f;
-            before += std::pow(error(step_alone, exact), 2);
-            after += std::pow(error(with_taa, exact), 2);
+                    for (int c = 0; c < 3; ++c) reference.at(x, y, c) *= 0.5f;
+            before += std::pow(error(step_alone, reference), 2);
+            after += std::pow(error(with_taa, reference), 2);
         }
         EXPECT_LT(10 * std::log10(after / before), 0.3);
     }

@@ -67,8 +67,8 @@ bool allow_reading(int ruleset, const std::string& path) {
     return syscall(kLandlockAddRule, ruleset, kLandlockPathBeneath, &rule, 0) == 0;
 }
 
-/// To read a terminal takes the keys from whom they are meant for, and to open some devices acts on them. A
-/// mount that cannot be looked at gets no rule.
+/// Whoever reads a terminal takes the keys that another program waits for, and opening some devices makes
+/// them act. A mount that cannot be examined gets no rule.
 bool allow_reading_all_but_devices(int ruleset) {
     DIR* const root = opendir("/");
     if (!root) return false;

@@ -13,6 +13,7 @@ grammar::Form role_form();
 
 /// The same and the roles that steps alone have.
 grammar::Form step_role_form();
+
 /// "auto" and the names of colour spaces.
 grammar::Form color_space_form();
 

@@ -28,8 +28,8 @@ namespace aftershade::serve {
 class Connections {
 public:
     struct Limits {
-        /// Of more, the oldest one that has not shown that it may ask is closed. A process may have 1024
-        /// files.
+        /// Beyond these, the server closes the oldest connection that has not shown a token. A process may
+        /// have 1024 files.
         std::size_t connections = 700;
         std::chrono::milliseconds request{10'000};  ///< from the first byte to the last
         std::chrono::milliseconds answer{30'000};   ///< for the peer to take it
@@ -44,8 +44,8 @@ public:
     };
     using Reply = std::function<void(Response)>;
     struct Handlers {
-        /// Of a request without its body, on the thread of the sockets: what it answers needs no work.
-        /// nullopt lets the request through to `work`.
+        /// Answers a request before its body is read, on the thread of the sockets, so that it may not take
+        /// long. nullopt lets the request through to `work`.
         std::function<std::optional<Response>(const Request& head)> at_once;
         /// Called on several threads. Calls `reply` once, on any thread, during the call or later, while
         /// these Connections live.

@@ -37,8 +37,7 @@ public:
         : setup_(std::move(setup)), stamp_(stamp_of_folders(setup_.effect_folders)) {}
 
     using Reply = PictureQueue::Reply;
-    /// Of a request that the guards let through, to an address below /api/. What is drawn is replied to
-    /// later.
+    /// Answers a request to an address below /api/ that the guards let through; a picture once it is drawn.
     void answer(const Request& request, const Reply& reply);
 
 private:

@@ -5,7 +5,7 @@ import numpy
 
 from family import AFTERSHADE, ROOT, command, read_exr
 from quality import WORK
-from sequences import RGB, SIZE, run, scene_profile
+from sequences import RGB, SIZE, run, scene_document, scene_profile
 from techniques import LUMINANCE, psnr_db, scale_of
 
 FRAMES, FIRST = 24, 9
@@ -13,8 +13,7 @@ PX_PER_M = 555  # of shadow_edge's slab, in its middle, 240 px wide
 
 
 def scene_of(name):
-    text = "\n".join(l for l in (ROOT / "scenes" / name / "scene.json").read_text().splitlines() if not l.lstrip().startswith("//"))
-    return json.loads(text) | {"frames": f"1-{FRAMES}"}
+    return scene_document(name) | {"frames": f"1-{FRAMES}"}
 
 
 def shadow(px_per_frame):

@@ -11,9 +11,13 @@ SIZE = "240x135"
 RGB = "RGB"
 
 
-def scene_profile(scene):
+def scene_document(scene):
     text = "\n".join(l for l in (ROOT / "scenes" / scene / "scene.json").read_text().splitlines() if not l.lstrip().startswith("//"))
-    materials = json.loads(text)["materials"].values()
+    return json.loads(text)
+
+
+def scene_profile(scene):
+    materials = scene_document(scene)["materials"].values()
     return next(m["scattering_profile"] for m in materials if "scattering_profile" in m)
 
 

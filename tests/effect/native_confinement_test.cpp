@@ -104,7 +104,7 @@ public:
     Outside& operator=(const Outside&) = delete;
 
     static std::string secret() { return "a secret of process " + std::to_string(getpid()); }
-    /// Of what the attempts make, so that tests at the same time do not see each other's.
+    /// The name of what the attempts make, so that tests that run at the same time do not meet.
     static std::string own_name() { return "as" + std::to_string(getpid()); }
 
     CommandResult run(const std::string& how) const {

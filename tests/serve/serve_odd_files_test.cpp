@@ -58,7 +58,7 @@ TEST_P(ServeOddFiles, HoldUpNoRequestAndNoEnd) {
                       std::string::npos)
                 << saved.body;
         }
-        kill(drawer(), SIGKILL);  // the next one reads everything anew
+        kill(drawer(), SIGKILL);  // the next one reads everything again
         answered(get("/api/picture?frame=1"), "picture");
         EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)) << "six requests";
         const auto end = std::chrono::steady_clock::now();

@@ -151,7 +151,7 @@ TEST_F(ServePaths, OfAUsedLookThatChangesLaterAreRefusedByTheProcessThatDrawsToo
     EXPECT_EQ(get("/api/picture?frame=1").status, 200);
     write_text(folder_ / "other.json", text(R"({ "effect": "vignette", "mask": { "file": )" +
                                             Json((outside_ / "mask.png").string()).dump() + " } }")["value"]);
-    kill(drawer(), SIGKILL);  // the next one reads the look anew
+    kill(drawer(), SIGKILL);  // the next one reads the look again
     const Answer picture = get("/api/picture?frame=1");
     EXPECT_EQ(picture.status, 403);
     EXPECT_NE(picture.body.find("mask.png' is not a file that the look named when it was read"),
