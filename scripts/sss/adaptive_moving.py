@@ -12,8 +12,11 @@ FRAMES, FIRST = 24, 9
 PX_PER_M = 555  # of shadow_edge's slab, in its middle, 240 px wide
 
 
-def scene_of(name):
-    return scene_document(name) | {"frames": f"1-{FRAMES}"}
+LONG = 100  # frames of a slow fade, whose changes would add up
+
+
+def scene_of(name, frames=FRAMES):
+    return scene_document(name) | {"frames": f"1-{frames}"}
 
 
 def shadow(px_per_frame):
@@ -37,8 +40,8 @@ def colours():
 
 
 def fading():
-    scene = scene_of("shadow_edge")
-    scene["lights"][0]["intensity"] = {"keys": {str(f): 3 * 0.99**f for f in range(FRAMES + 2)}}
+    scene = scene_of("shadow_edge", LONG)
+    scene["lights"][0]["intensity"] = {"keys": {str(f): 3 * 0.99**f for f in range(LONG + 2)}}
     return scene
 
 
@@ -52,7 +55,7 @@ def panning():
 SCENES = {"`head`: a light that goes round it": ("head", lambda: scene_of("head")),
           **{f"`shadow_edge`: its bar at {v} px a frame": ("shadow_edge", lambda v=v: shadow(v)) for v in (0.4, 1.6, 6.5, 26)},
           "`shadow_edge`: light that changes its colour": ("shadow_edge", colours),
-          "`shadow_edge`: light that fades by 1 % a frame": ("shadow_edge", fading),
+          "`shadow_edge`: light that fades by 1 % a frame, 100 frames": ("shadow_edge", fading),
           "`head`: a camera that pans": ("head", panning)}
 STILLS = ("skin_patch", "skin_ear", "skin_front")
 
@@ -89,10 +92,12 @@ def largest_step(picture, where, scale):
 def moving():
     rows = []
     for index, (label, (scene, make)) in enumerate(SCENES.items()):
-        capture, profile = rendered(str(index), make(), f"1-{FRAMES}"), scene_profile(scene)
+        document = make()
+        capture, profile = rendered(str(index), document, document["frames"]), scene_profile(scene)
         where, scale = frames_of(capture)
-        shown = range(FIRST - 1, FRAMES)
-        pictures = lambda name, effect, params, taps=(): run(f"moving_{name}", capture, profile, params, FRAMES, effect, taps)
+        frames = len(where)
+        shown = range(FIRST - 1, frames)
+        pictures = lambda name, effect, params, taps=(): run(f"moving_{name}", capture, profile, params, frames, effect, taps)
         exact = pictures("reference", "sss_burley", {"samples": 2048})["irradiance"]
         own, alone = (pictures(n, "sss_adaptive", p, ("estimate",)) for n, p in (("own", {}), ("alone", {"guiding": False})))
         count = numpy.mean([own["estimate"][i][..., 3][where[i]].mean() for i in shown])
