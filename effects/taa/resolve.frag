@@ -40,7 +40,9 @@ float bell(float distance) {
     // Harris 1978, minimum 4 terms, with the cosines of two and three times the angle as powers of c.
     return 0.35875 - 0.14128 + (0.48829 - 3.0 * 0.01168) * c + 2.0 * 0.14128 * c * c + 4.0 * 0.01168 * c * c * c;
 #else
-    return exp(-2.29 * 3.3 * 3.3 * x * x);
+    // From 26 on, Mesa would multiply exp()'s log2(e) into the constant.
+    precise float exponent = -2.29 * 3.3 * 3.3 * x * x;
+    return exp(exponent);
 #endif
 }
 

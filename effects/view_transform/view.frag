@@ -28,7 +28,9 @@ vec3 transform(vec3 light) {
     vec3 stops = log2(max(kAgxInset * light, 1e-10));
     vec3 x = (clamp(stops, kAgxMinEv, kAgxMaxEv) - kAgxMinEv) / (kAgxMaxEv - kAgxMinEv);
     vec3 x2 = x * x, x4 = x2 * x2;
-    vec3 curve = 15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232;
+    // From 26 on, Mesa adds a constant at a sum's end earlier; at its front it stays, and so do the bits.
+    vec3 curve =
+        -(0.00232 - (15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x));
     return kAgxOutset * curve;  // already encoded for a 2.2 display
 }
 #else
