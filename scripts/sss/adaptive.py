@@ -36,7 +36,7 @@ SECTIONS = {
     "moving": both_motions,
     "light": light,
     "count": lambda: table(["controller", "samples, mean", "adaptive", "fixed", "ratio"], at_equal_count()),
-    "guiding": lambda: table(["", "`taa` alone", "guiding and `taa`", "ratio"], with_taa()),
+    "guiding": lambda: table(["", "`taa` alone", "guiding over 19 frames", "ratio", "over 99 frames", "ratio"], with_taa()),
     "bias": both_biases,
     "cycles": lambda: table(["", "samples, mean", "`sss_exact`, dB"], on_head()),
     "cost": lambda: table(["", "samples, mean", "PSNR, dB", *[f"{c}, ms" for c in COLUMNS], "all, ms", "times faster"], cost()),

@@ -44,8 +44,8 @@ def with_taa():
     frames, rows, deviations = 64, [], {}
     sequence = still(file, "native", frames)
     after = [{"effect": "sss_combine"}, {"effect": "taa", "params": {"static_frames": 10}}]
-    for label, params in (("`taa` alone", {"guiding": False}), ("guiding and `taa`", {"guiding": True, "guiding_weight": 0.1})):
-        color = run(f"taa_{params['guiding']}", sequence, profile, params, frames, after=after, taps=(),
+    for label, params in (("`taa` alone", {"guiding": False}), ("19 frames", {"guiding_weight": 0.1}), ("99 frames", {"guiding_weight": 0.02})):
+        color = run("taa", sequence, profile, params, frames, after=after, taps=(),
                     roles="color")["color"]
         deviations[label] = (color[frames // 2:] @ LUMINANCE).std(axis=0)
     light = read_exr(file, [f"irradiance.{c}" for c in RGB]) @ LUMINANCE
@@ -55,8 +55,8 @@ def with_taa():
     changed = numpy.abs(exact @ LUMINANCE - light) > 0.02 * numpy.percentile(light[where], 90)
     areas = {"shadow and its edge": where & (~lit | changed), "even light": where & lit & ~changed}
     for name, area in areas.items():
-        alone, guided = (deviations[l][area].mean() for l in deviations)
-        rows.append([name, f"{alone:.5f}", f"{guided:.5f}", f"{alone / guided:.1f}"])
+        alone, *guided = (deviations[l][area].mean() for l in deviations)
+        rows.append([name, f"{alone:.5f}", *(text for d in guided for text in (f"{d:.5f}", f"{alone / d:.1f}"))])
         print("guiding", rows[-1], flush=True)
     return rows
 
