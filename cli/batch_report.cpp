@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/capture/frame_range.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

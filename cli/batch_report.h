@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/error.h"
-#include "framework/core/status.h"
-#include "framework/pipeline/run.h"
+#include "framework/base/error.h"
+#include "framework/base/status.h"
+#include "framework/run/run.h"
 
 namespace aftershade::cli {
 

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "cli/run_options.h"
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/registry.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/look/look.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade::cli {
 

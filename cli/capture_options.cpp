@@ -10,9 +10,9 @@
 #include "framework/capture/capture.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/frame_range.h"
-#include "framework/core/data_path.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/data_path.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/image/color_space.h"
 
 namespace aftershade::cli {

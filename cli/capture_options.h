@@ -8,8 +8,8 @@
 
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 
 namespace CLI {

@@ -12,15 +12,15 @@
 #include "cli/gl_options.h"
 #include "cli/plugin_options.h"
 #include "cli/verbs.h"
-#include "framework/core/data_path.h"
-#include "framework/core/error.h"
-#include "framework/core/status.h"
-#include "framework/core/text.h"
+#include "framework/base/data_path.h"
+#include "framework/base/error.h"
+#include "framework/base/status.h"
+#include "framework/base/text.h"
 #include "framework/effect/lint.h"
 #include "framework/effect/usage_check.h"
-#include "framework/pipeline/effect_check.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/run/effect_check.h"
+#include "framework/look/look.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade::cli {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "framework/capture/capture.h"
-#include "framework/core/cores.h"
+#include "framework/base/cores.h"
 #include "framework/inspect/velocity_frames.h"
 #include "framework/inspect/velocity_report.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/capture_options.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::cli {
 

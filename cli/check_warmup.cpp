@@ -6,12 +6,12 @@
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
-#include "framework/core/data_path.h"
-#include "framework/core/scratch_folder.h"
-#include "framework/core/status.h"
-#include "framework/core/text.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/warmup.h"
+#include "framework/base/data_path.h"
+#include "framework/base/scratch_folder.h"
+#include "framework/base/status.h"
+#include "framework/base/text.h"
+#include "framework/look/look.h"
+#include "framework/run/warmup.h"
 
 namespace aftershade::cli {
 

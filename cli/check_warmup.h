@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/plugin_options.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {

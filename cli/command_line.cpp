@@ -7,9 +7,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <string_view>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

@@ -10,8 +10,8 @@
 #include "cli/verbs.h"
 #include "framework/compare/comparison_report.h"
 #include "framework/compare/difference_picture.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/cores.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/cores.h"
 
 namespace aftershade::cli {
 

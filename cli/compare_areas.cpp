@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "framework/batch/object_area.h"
-#include "framework/core/object_keys.h"
-#include "framework/core/units.h"
+#include "framework/document/object_keys.h"
+#include "framework/document/units.h"
 
 namespace aftershade::cli {
 

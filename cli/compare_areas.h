@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/compare/compare_files.h"
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 
 namespace CLI {
 class App;

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "framework/core/input_files.h"
+#include "framework/base/input_files.h"
 
 namespace aftershade::cli {
 

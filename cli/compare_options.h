@@ -8,8 +8,8 @@
 
 #include "cli/compare_areas.h"
 #include "framework/compare/compare_files.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
 
 namespace CLI {
 class App;

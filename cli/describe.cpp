@@ -13,9 +13,9 @@
 #include "cli/effect_options.h"
 #include "cli/profile_report.h"
 #include "cli/verbs.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/scattering/param_scattering.h"
 
 namespace aftershade::cli {

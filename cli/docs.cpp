@@ -13,8 +13,8 @@
 #include "cli/effect_options.h"
 #include "cli/man_page.h"
 #include "cli/verbs.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/side_file.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/side_file.h"
 #include "framework/effect/describe.h"
 #include "framework/scene/scene_schema.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/grammar_table.h"
+#include "framework/document/grammar_table.h"
 
 namespace aftershade::cli {
 

@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "cli/batch_report.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

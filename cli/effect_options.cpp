@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "framework/core/data_path.h"
-#include "framework/core/path_bounds.h"
+#include "framework/base/data_path.h"
+#include "framework/base/path_bounds.h"
 
 namespace aftershade::cli {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/registry.h"
 
 namespace CLI {
@@ -18,7 +18,7 @@ void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths);
 
 /// A path that is not a folder is a fault.
 void check_effect_paths(const std::vector<std::string>& paths, Diagnostics& diagnostics);
-/// --allow-path, for verbs whose documents name files (framework/core/path_bounds.h).
+/// --allow-path, for verbs whose documents name files (framework/base/path_bounds.h).
 void add_allow_path_option(CLI::App& app);
 
 /// The shipped effects, below those of `paths`; a path that is not a folder is a fault.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "aftershade/error.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::cli {
 

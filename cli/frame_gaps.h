@@ -3,8 +3,8 @@
 
 #include "cli/capture_options.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/diagnostics.h"
-#include "framework/pipeline/run_options.h"
+#include "framework/base/diagnostics.h"
+#include "framework/run/run_options.h"
 
 namespace aftershade::cli {
 

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::cli {
 

@@ -14,10 +14,10 @@
 #include "cli/verbs.h"
 #include "framework/batch/golden_approve.h"
 #include "framework/batch/report_page.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/input_files.h"
-#include "framework/core/side_file.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/input_files.h"
+#include "framework/base/side_file.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
 #include "framework/batch/worker.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

@@ -9,10 +9,10 @@
 #include <fstream>
 #include <string_view>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/side_file.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/side_file.h"
+#include "framework/base/text.h"
 
 extern char** environ;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/command_tree.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/image/role.h"
 #include "framework/image/square_pixels.h"
 

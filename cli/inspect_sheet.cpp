@@ -10,7 +10,7 @@
 #include "framework/image/display.h"
 #include "framework/image/role.h"
 #include "framework/inspect/frame_sheet.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade::cli {
 

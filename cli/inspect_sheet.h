@@ -4,7 +4,7 @@
 #include <string>
 
 #include "framework/capture/capture.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 
 namespace aftershade::cli {

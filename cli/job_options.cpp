@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <charconv>
 
-#include "framework/core/cores.h"
-#include "framework/core/units.h"
-#include "framework/pipeline/warmup.h"
+#include "framework/base/cores.h"
+#include "framework/document/units.h"
+#include "framework/run/warmup.h"
 
 namespace aftershade::cli {
 

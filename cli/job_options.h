@@ -8,8 +8,8 @@
 
 #include "framework/batch/job_plan.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/diagnostics.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/base/diagnostics.h"
+#include "framework/look/pipeline.h"
 
 namespace CLI {
 class App;

@@ -11,7 +11,7 @@
 #include "cli/effect_options.h"
 #include "cli/profile_report.h"
 #include "cli/verbs.h"
-#include "framework/core/data_path.h"
+#include "framework/base/data_path.h"
 
 namespace aftershade::cli {
 

@@ -26,10 +26,10 @@
 #include "cli/plugin_options.h"
 #include "cli/slip_hints.h"
 #include "cli/verbs.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/memory_limit.h"
-#include "framework/core/status.h"
-#include "framework/core/text.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/memory_limit.h"
+#include "framework/base/status.h"
+#include "framework/base/text.h"
 #include "framework/effect/native/native_process.h"
 
 using aftershade::ExitCode;

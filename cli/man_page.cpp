@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/merge_reports.h"
 #include "cli/verbs.h"
 #include "framework/batch/farm_job.h"
-#include "framework/core/atomic_file.h"
+#include "framework/base/atomic_file.h"
 
 namespace aftershade::cli {
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "framework/capture/frame_range.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/side_file.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/side_file.h"
 
 namespace aftershade::cli {
 

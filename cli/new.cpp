@@ -7,7 +7,7 @@
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "cli/verbs.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/effect/new_effect.h"
 
 namespace aftershade::cli {

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/command_line.h"
 #include "cli/interrupt.h"
 #include "framework/batch/worker.h"
-#include "framework/core/memory_limit.h"
+#include "framework/base/memory_limit.h"
 
 namespace aftershade::cli {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "framework/batch/watchdog.h"
-#include "framework/core/error.h"
-#include "framework/core/status.h"
+#include "framework/base/error.h"
+#include "framework/base/status.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/native/native_process.h"
 

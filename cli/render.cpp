@@ -15,9 +15,9 @@
 #include "cli/visibility_options.h"
 #include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
-#include "framework/core/cores.h"
-#include "framework/core/input_files.h"
-#include "framework/core/text.h"
+#include "framework/base/cores.h"
+#include "framework/base/input_files.h"
+#include "framework/base/text.h"
 #include "framework/scene/job.h"
 
 namespace aftershade::cli {

@@ -7,8 +7,8 @@
 #include <list>
 
 #include "cli/command_line.h"
-#include "framework/core/text.h"
-#include "framework/pipeline/run_lock.h"
+#include "framework/base/text.h"
+#include "framework/run/run_lock.h"
 
 namespace aftershade::cli {
 

@@ -1,12 +1,12 @@
-// `run` over several frames: what is current is left alone (framework/pipeline/resume.h).
+// `run` over several frames: what is current is left alone (framework/run/resume.h).
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <string>
 
-#include "framework/core/error.h"
-#include "framework/pipeline/resume.h"
+#include "framework/base/error.h"
+#include "framework/run/resume.h"
 
 namespace CLI {
 class App;

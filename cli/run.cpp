@@ -22,13 +22,13 @@
 #include "cli/stream_options.h"
 #include "cli/verbs.h"
 #include "framework/capture/frame_range.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/cores.h"
-#include "framework/core/data_path.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/cores.h"
+#include "framework/base/data_path.h"
+#include "framework/base/text.h"
 #include "framework/file/frame_stream.h"
-#include "framework/pipeline/output.h"
-#include "framework/pipeline/pixel_shape.h"
+#include "framework/run/output.h"
+#include "framework/look/pixel_shape.h"
 
 namespace aftershade::cli {
 

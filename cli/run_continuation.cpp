@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

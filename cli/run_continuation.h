@@ -8,7 +8,7 @@
 #include "cli/run_options.h"
 #include "cli/run_report.h"
 #include "framework/capture/capture.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade::cli {
 

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string>
 
-#include "framework/core/data_path.h"
-#include "framework/pipeline/look_content.h"
-#include "framework/pipeline/output.h"
-#include "framework/pipeline/run_state.h"
+#include "framework/base/data_path.h"
+#include "framework/look/look_content.h"
+#include "framework/run/output.h"
+#include "framework/run/run_state.h"
 
 namespace aftershade::cli {
 

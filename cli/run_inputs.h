@@ -4,9 +4,9 @@
 #include "cli/bound_look.h"
 #include "cli/run_options.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/input_files.h"
-#include "framework/pipeline/output_options.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/input_files.h"
+#include "framework/run/output_options.h"
 
 namespace aftershade::cli {
 

@@ -9,7 +9,7 @@
 
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
-#include "framework/core/units.h"
+#include "framework/document/units.h"
 #include "framework/file/frame_stream.h"
 
 namespace aftershade::cli {

@@ -10,11 +10,11 @@
 #include "cli/plugin_options.h"
 #include "cli/resume.h"
 #include "cli/stream_options.h"
-#include "framework/core/diagnostics.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/output_options.h"
-#include "framework/pipeline/pipeline.h"
-#include "framework/pipeline/run_options.h"
+#include "framework/base/diagnostics.h"
+#include "framework/look/look.h"
+#include "framework/run/output_options.h"
+#include "framework/look/pipeline.h"
+#include "framework/run/run_options.h"
 
 namespace CLI {
 class App;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "framework/capture/frame_range.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "framework/pipeline/run.h"
+#include "framework/run/run.h"
 
 namespace aftershade::cli {
 

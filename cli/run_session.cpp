@@ -12,10 +12,10 @@
 #include "cli/graph_file.h"
 #include "cli/run_continuation.h"
 #include "cli/telemetry_plot.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/data_path.h"
-#include "framework/core/text.h"
-#include "framework/core/trace.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/data_path.h"
+#include "framework/base/text.h"
+#include "framework/render/trace.h"
 #include "framework/gpu/timer.h"
 
 namespace aftershade::cli {

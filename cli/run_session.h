@@ -13,9 +13,9 @@
 #include "cli/run_options.h"
 #include "cli/run_report.h"
 #include "cli/watch.h"
-#include "framework/core/status.h"
+#include "framework/base/status.h"
 #include "framework/gpu/context.h"
-#include "framework/pipeline/run.h"
+#include "framework/run/run.h"
 
 namespace aftershade::cli {
 

@@ -13,11 +13,11 @@
 #include "cli/run_continuation.h"
 #include "framework/batch/run_jobs.h"
 #include "framework/capture/frame_range.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/cores.h"
-#include "framework/core/text.h"
-#include "framework/pipeline/object_matches.h"
-#include "framework/pipeline/run_lock.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/cores.h"
+#include "framework/base/text.h"
+#include "framework/look/object_matches.h"
+#include "framework/run/run_lock.h"
 
 namespace aftershade::cli {
 

@@ -6,8 +6,8 @@
 #include "cli/run_options.h"
 #include "cli/run_report.h"
 #include "framework/batch/job_plan.h"
-#include "framework/core/error.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/base/error.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade::cli {
 

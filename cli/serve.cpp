@@ -25,9 +25,9 @@
 #include "cli/verbs.h"
 #include "framework/batch/watchdog.h"
 #include "framework/batch/worker.h"
-#include "framework/core/data_path.h"
-#include "framework/core/error.h"
-#include "framework/core/memory_limit.h"
+#include "framework/base/data_path.h"
+#include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
 #include "framework/serve/drawer.h"
 
 extern char** environ;

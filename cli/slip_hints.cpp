@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

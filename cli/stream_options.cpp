@@ -7,7 +7,7 @@
 
 #include "cli/run_options.h"
 #include "framework/file/frame_stream.h"
-#include "framework/pipeline/frame_run.h"
+#include "framework/run/frame_run.h"
 
 namespace aftershade::cli {
 

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "framework/capture/capture.h"
-#include "framework/core/diagnostics.h"
-#include "framework/pipeline/output_options.h"
-#include "framework/pipeline/pipeline.h"
-#include "framework/pipeline/run_options.h"
+#include "framework/base/diagnostics.h"
+#include "framework/run/output_options.h"
+#include "framework/look/pipeline.h"
+#include "framework/run/run_options.h"
 
 namespace CLI {
 class App;

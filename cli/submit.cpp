@@ -19,9 +19,9 @@
 #include "cli/verbs.h"
 #include "framework/batch/farm_job.h"
 #include "framework/capture/frame_range.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/side_file.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/side_file.h"
+#include "framework/base/text.h"
 
 namespace aftershade::cli {
 

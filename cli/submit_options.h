@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 
 namespace CLI {
 class App;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/pipeline/telemetry.h"
+#include "framework/render/telemetry.h"
 
 namespace aftershade::cli {
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace CLI {
 class App;

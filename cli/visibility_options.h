@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/scene/visibility.h"
 
 namespace CLI {

@@ -14,13 +14,13 @@
 #include "cli/gl_options.h"
 #include "cli/plugin_options.h"
 #include "cli/verbs.h"
-#include "framework/core/cores.h"
-#include "framework/core/data_path.h"
-#include "framework/core/scratch_folder.h"
-#include "framework/core/status.h"
+#include "framework/base/cores.h"
+#include "framework/base/data_path.h"
+#include "framework/base/scratch_folder.h"
+#include "framework/base/status.h"
 #include "framework/effect/program_store.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/run.h"
+#include "framework/look/look.h"
+#include "framework/run/run.h"
 
 namespace aftershade::cli {
 

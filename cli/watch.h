@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/look/look.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade::cli {
 

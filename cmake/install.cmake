@@ -13,7 +13,7 @@ endif()
 
 configure_file(cmake/exports.map.in exports.map @ONLY)
 add_library(aftershade_shared SHARED $<TARGET_OBJECTS:aftershade_host>)
-target_link_libraries(aftershade_shared PRIVATE aftershade_compare aftershade_inspect aftershade_pipeline fmt::fmt Threads::Threads)
+target_link_libraries(aftershade_shared PRIVATE aftershade_compare aftershade_inspect aftershade_run fmt::fmt Threads::Threads)
 target_link_options(aftershade_shared PRIVATE -Wl,--version-script,${PROJECT_BINARY_DIR}/exports.map -Wl,--as-needed)
 if(NOT AFTERSHADE_SANITIZE)
   target_link_options(aftershade_shared PRIVATE -Wl,-z,defs)

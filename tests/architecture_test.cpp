@@ -22,23 +22,32 @@ const fs::path kRoot = AFTERSHADE_SOURCE_DIR;
 /// The modules that each module may include, besides itself.
 const std::map<std::string, std::set<std::string>> kAllowed = {
     {"plugin", {}},
-    {"core", {}},
-    {"scattering", {"core"}},
-    {"image", {"core"}},
-    {"file", {"core", "image"}},
-    {"capture", {"core", "image", "file"}},
-    {"inspect", {"core", "image", "file", "capture"}},
-    {"compare", {"core", "image", "file"}},
-    {"gpu", {"core"}},
-    {"graph", {"core", "gpu"}},
-    {"effect", {"core", "scattering", "image", "file", "gpu", "graph", "plugin"}},
-    {"pipeline", {"core", "image", "file", "capture", "gpu", "graph", "effect", "plugin"}},
-    {"batch", {"core", "image", "file", "capture", "compare", "gpu", "graph", "effect", "pipeline"}},
+    {"base", {}},
+    {"document", {"base"}},
+    {"scattering", {"base", "document"}},
+    {"image", {"base", "document"}},
+    {"file", {"base", "document", "image"}},
+    {"capture", {"base", "document", "image", "file"}},
+    {"inspect", {"base", "document", "image", "file", "capture"}},
+    {"compare", {"base", "document", "image", "file"}},
+    {"gpu", {"base"}},
+    {"graph", {"base", "gpu"}},
+    {"effect", {"base", "document", "scattering", "image", "file", "gpu", "graph", "plugin"}},
+    {"look", {"base", "document", "image", "file", "capture", "effect", "plugin"}},
+    {"render", {"base", "document", "image", "file", "capture", "gpu", "graph", "effect", "plugin", "look"}},
+    {"run",
+     {"base", "document", "image", "file", "capture", "gpu", "graph", "effect", "plugin", "look", "render"}},
+    {"batch",
+     {"base", "document", "image", "file", "capture", "compare", "gpu", "graph", "effect", "look", "render",
+      "run"}},
     {"host",
-     {"core", "image", "file", "capture", "inspect", "compare", "gpu", "graph", "effect", "pipeline"}},
-    {"serve", {"core", "image", "file", "capture", "compare", "gpu", "graph", "effect", "pipeline"}},
-    {"scene", {"core", "scattering", "image", "file", "capture"}},
-    {"visibility", {"core", "gpu", "graph", "image", "scene"}},
+     {"base", "document", "image", "file", "capture", "inspect", "compare", "gpu", "graph", "effect", "look",
+      "render", "run"}},
+    {"serve",
+     {"base", "document", "image", "file", "capture", "compare", "gpu", "graph", "effect", "look", "render",
+      "run"}},
+    {"scene", {"base", "document", "scattering", "image", "file", "capture"}},
+    {"visibility", {"base", "gpu", "graph", "image", "scene"}},
 };
 
 struct Line {
@@ -164,7 +173,7 @@ std::vector<std::string> role_names() {
 TEST(Architecture, RolesAreToldApartByTheirKindsNotTheirNames) {
     // Words of documents and options, and the renderer, which says what it computes for each role.
     const std::set<std::string> allowed = {"cli/run_options.cpp", "framework/compare/layer.cpp",
-                                           "framework/image/role.cpp", "framework/pipeline/value_source.cpp",
+                                           "framework/image/role.cpp", "framework/look/value_source.cpp",
                                            "framework/scene/capture_images.cpp"};
     std::string any;
     const std::vector<std::string> names = role_names();
@@ -183,7 +192,7 @@ TEST(Architecture, RolesAreToldApartByTheirKindsNotTheirNames) {
 
 TEST(Architecture, TheGraphKnowsNoDocuments) {
     for (const Line& line : code_lines(kRoot / "framework/graph", {".h", ".cpp"}))
-        EXPECT_EQ(line.text.find("framework/core/document.h"), std::string::npos) << line.place;
+        EXPECT_EQ(line.text.find("framework/document/document.h"), std::string::npos) << line.place;
 }
 
 /// Every text file of the repository, by its path from the root; what .gitignore names is left out.

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/pipeline/renderer.h"
+#include "framework/render/renderer.h"
 #include "framework/scattering/param_scattering.h"
 #include "tests/every_effect.h"
 

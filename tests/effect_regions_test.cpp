@@ -6,8 +6,8 @@
 
 #include "framework/capture/capture_window.h"
 #include "framework/image/window.h"
-#include "framework/pipeline/reach.h"
-#include "framework/pipeline/renderer.h"
+#include "framework/look/reach.h"
+#include "framework/render/renderer.h"
 #include "tests/every_effect.h"
 
 namespace aftershade::test {

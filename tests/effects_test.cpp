@@ -11,7 +11,7 @@
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_case.h"
 #include "framework/capture/frame_range.h"
-#include "framework/core/param_type.h"
+#include "framework/document/param_type.h"
 #include "framework/effect/usage_check.h"
 #include "tests/every_effect.h"
 

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/capture/capture.h"
-#include "framework/core/units.h"
+#include "framework/document/units.h"
 #include "framework/effect/registry.h"
 #include "framework/gpu/context.h"
 #include "tests/camera_pose.h"

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/pipeline/pixel_shape.h"
-#include "framework/pipeline/reach.h"
+#include "framework/look/pixel_shape.h"
+#include "framework/look/reach.h"
 #include "tests/every_effect.h"
-#include "tests/pipeline/effect_fixture.h"
+#include "tests/render/effect_fixture.h"
 #include "tests/square_pixels_by_hand.h"
 
 namespace aftershade::test {

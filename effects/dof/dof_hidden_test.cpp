@@ -10,7 +10,7 @@
 
 #include "framework/image/role.h"
 #include "tests/aperture_checks.h"
-#include "tests/pipeline/effect_fixture.h"
+#include "tests/render/effect_fixture.h"
 
 namespace aftershade::test::dof {
 namespace {

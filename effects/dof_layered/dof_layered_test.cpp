@@ -7,7 +7,7 @@
 #include "framework/image/role.h"
 #include "tests/aperture_family.h"
 #include "tests/lens.h"
-#include "tests/pipeline/effect_fixture.h"
+#include "tests/render/effect_fixture.h"
 
 namespace aftershade::test::dof_layered {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "framework/scene/renderer.h"
 #include "tests/backends.h"
-#include "tests/pipeline/effect_fixture.h"
+#include "tests/render/effect_fixture.h"
 #include "tests/scene/scene_text.h"
 
 namespace aftershade::test::sss_combine {

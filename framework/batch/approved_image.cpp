@@ -12,10 +12,10 @@
 #include <sys/utsname.h>
 
 #include "framework/capture/frame_range.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/document.h"
-#include "framework/core/path_bounds.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/document/document.h"
+#include "framework/base/path_bounds.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 

@@ -4,10 +4,10 @@
 
 #include "framework/capture/frame_range.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/content_hash.h"
-#include "framework/core/data_path.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
+#include "framework/base/content_hash.h"
+#include "framework/base/data_path.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {

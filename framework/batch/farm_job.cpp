@@ -6,7 +6,7 @@
 #include <array>
 
 #include "framework/batch/farm_files.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 

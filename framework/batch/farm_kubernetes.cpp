@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/batch/farm_files.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "framework/batch/farm_files.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/batch/farm_files.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade {
 

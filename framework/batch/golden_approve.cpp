@@ -5,10 +5,10 @@
 #include <mutex>
 
 #include "framework/batch/capture_hash.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/input_files.h"
-#include "framework/core/side_file.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/input_files.h"
+#include "framework/base/side_file.h"
 
 namespace aftershade {
 

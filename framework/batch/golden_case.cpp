@@ -4,11 +4,11 @@
 
 #include "framework/batch/golden_grammar.h"
 #include "framework/capture/frame_range.h"
-#include "framework/core/grammar_reader.h"
-#include "framework/core/path_bounds.h"
-#include "framework/core/text.h"
-#include "framework/core/units.h"
-#include "framework/pipeline/look.h"
+#include "framework/document/grammar_reader.h"
+#include "framework/base/path_bounds.h"
+#include "framework/base/text.h"
+#include "framework/document/units.h"
+#include "framework/look/look.h"
 
 namespace aftershade {
 

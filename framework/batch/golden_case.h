@@ -11,9 +11,9 @@
 
 #include "framework/compare/compare_area.h"
 #include "framework/compare/compare_files.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/document.h"
-#include "framework/core/object_keys.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
+#include "framework/document/object_keys.h"
 
 namespace aftershade::grammar {
 class Reader;

@@ -8,8 +8,8 @@
 #include "framework/capture/document_forms.h"
 #include "framework/compare/compare_area.h"
 #include "framework/compare/compare_files.h"
-#include "framework/core/schema_pieces.h"
-#include "framework/core/units.h"
+#include "framework/document/schema_pieces.h"
+#include "framework/document/units.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {

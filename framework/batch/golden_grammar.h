@@ -1,7 +1,7 @@
-// The grammar of golden suites and of effects' cases, declared once (framework/core/grammar.h).
+// The grammar of golden suites and of effects' cases, declared once (framework/document/grammar.h).
 #pragma once
 
-#include "framework/core/grammar.h"
+#include "framework/document/grammar.h"
 
 namespace aftershade {
 

@@ -9,9 +9,9 @@
 #include "framework/batch/worker.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/file/exr_file.h"
 #include "framework/image/role.h"
 

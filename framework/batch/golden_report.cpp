@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "framework/compare/comparison_report.h"
-#include "framework/core/lfs_pointer.h"
-#include "framework/core/text.h"
+#include "framework/base/lfs_pointer.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 

@@ -13,10 +13,10 @@
 
 #include "framework/batch/capture_hash.h"
 #include "framework/batch/look_hash.h"
-#include "framework/core/data_path.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
-#include "framework/core/scratch_folder.h"
+#include "framework/base/data_path.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
+#include "framework/base/scratch_folder.h"
 
 namespace aftershade {
 

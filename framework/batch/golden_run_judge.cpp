@@ -8,9 +8,9 @@
 
 #include "framework/batch/golden_run.h"
 #include "framework/compare/difference_picture.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/lfs_pointer.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/lfs_pointer.h"
 #include "framework/file/png_file.h"
 
 namespace aftershade {

@@ -12,11 +12,11 @@
 #include "framework/batch/golden_grammar.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/data_path.h"
-#include "framework/core/error.h"
-#include "framework/core/grammar_reader.h"
-#include "framework/core/grammar_schema.h"
-#include "framework/core/path_bounds.h"
+#include "framework/base/data_path.h"
+#include "framework/base/error.h"
+#include "framework/document/grammar_reader.h"
+#include "framework/document/grammar_schema.h"
+#include "framework/base/path_bounds.h"
 
 namespace aftershade {
 

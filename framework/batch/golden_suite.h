@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/batch/golden_case.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/input_files.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/input_files.h"
 
 namespace aftershade {
 

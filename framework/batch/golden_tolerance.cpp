@@ -5,7 +5,7 @@
 #include "framework/batch/golden_case.h"
 #include "framework/batch/golden_grammar.h"
 #include "framework/batch/object_area.h"
-#include "framework/core/grammar_reader.h"
+#include "framework/document/grammar_reader.h"
 
 namespace aftershade {
 

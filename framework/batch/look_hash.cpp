@@ -2,11 +2,11 @@
 
 #include <set>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/content_hash.h"
-#include "framework/core/text.h"
-#include "framework/pipeline/look_content.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/content_hash.h"
+#include "framework/base/text.h"
+#include "framework/look/look_content.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade {
 

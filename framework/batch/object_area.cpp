@@ -5,10 +5,10 @@
 
 #include "framework/capture/capture.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/data_path.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/data_path.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/compare/compare_area.h"
-#include "framework/core/object_keys.h"
+#include "framework/document/object_keys.h"
 #include "framework/file/exr_file.h"
 
 namespace aftershade {

@@ -13,10 +13,10 @@
 
 #include "framework/batch/page_pixels.h"
 #include "framework/compare/layer_file.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/open_file.h"
-#include "framework/core/side_file.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/open_file.h"
+#include "framework/base/side_file.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <utility>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/side_file.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/side_file.h"
 
 namespace aftershade {
 

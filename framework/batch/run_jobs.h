@@ -13,7 +13,7 @@
 #include "framework/batch/job_plan.h"
 #include "framework/batch/watchdog.h"
 #include "framework/batch/worker.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade {
 

@@ -4,7 +4,7 @@
 #include <sys/types.h>
 
 #include "framework/batch/worker.h"
-#include "framework/core/child_process.h"
+#include "framework/base/child_process.h"
 
 namespace aftershade {
 

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-#include "framework/core/status.h"
+#include "framework/base/status.h"
 
 namespace aftershade {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "framework/batch/spawn.h"
-#include "framework/core/memory_limit.h"
+#include "framework/base/memory_limit.h"
 
 namespace aftershade {
 

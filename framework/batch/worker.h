@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/child_process.h"
-#include "framework/core/status.h"
+#include "framework/base/child_process.h"
+#include "framework/base/status.h"
 
 namespace aftershade {
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/batch/worker.h"
-#include "framework/core/units.h"
+#include "framework/document/units.h"
 
 namespace aftershade {
 

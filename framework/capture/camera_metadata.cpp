@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "framework/capture/stored_matrices.h"
-#include "framework/core/error.h"
-#include "framework/core/units.h"
+#include "framework/base/error.h"
+#include "framework/document/units.h"
 
 namespace aftershade {
 

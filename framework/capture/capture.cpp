@@ -12,8 +12,8 @@
 #include "framework/capture/decode.h"
 #include "framework/capture/layer_roles.h"
 #include "framework/capture/sample_means.h"
-#include "framework/core/error.h"
-#include "framework/core/units.h"
+#include "framework/base/error.h"
+#include "framework/document/units.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -70,7 +70,7 @@ struct Capture {
     /// Of a deep capture: what became of its samples, and as how many layers.
     std::optional<DeepReduction> deep;
     int deep_layers = 0;
-    /// By role, as they were read; filled by whoever looks for them (framework/pipeline/nan_policy.h).
+    /// By role, as they were read; filled by whoever looks for them (framework/run/nan_policy.h).
     std::map<std::string, NonFinitePixels> non_finite;
 };
 

@@ -3,7 +3,7 @@
 
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/encode_role.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -6,8 +6,8 @@
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/common_names.h"
 #include "framework/capture/layer_roles.h"
-#include "framework/core/error.h"
-#include "framework/core/units.h"
+#include "framework/base/error.h"
+#include "framework/document/units.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

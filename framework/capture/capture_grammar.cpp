@@ -5,7 +5,7 @@
 
 #include "framework/capture/deep_layers.h"
 #include "framework/capture/document_forms.h"
-#include "framework/core/grammar_schema.h"
+#include "framework/document/grammar_schema.h"
 #include "framework/image/camera.h"
 #include "framework/image/image_forms.h"
 

@@ -1,11 +1,11 @@
-// The grammar of capture.json and its parts, declared once (framework/core/grammar.h).
+// The grammar of capture.json and its parts, declared once (framework/document/grammar.h).
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "framework/core/grammar.h"
+#include "framework/document/grammar.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -5,7 +5,7 @@
 
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/layer_roles.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 

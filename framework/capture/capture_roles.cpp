@@ -8,7 +8,7 @@
 #include "framework/capture/channel_names.h"
 #include "framework/capture/common_data.h"
 #include "framework/capture/common_names.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

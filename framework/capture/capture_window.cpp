@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
-#include "framework/core/diagnostics.h"
-#include "framework/core/text.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

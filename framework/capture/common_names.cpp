@@ -5,7 +5,7 @@
 #include <set>
 
 #include "framework/capture/channel_names.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/image/color_space.h"
 #include "framework/image/role.h"
 

@@ -14,11 +14,11 @@
 
 #include "framework/capture/channel_names.h"
 #include "framework/capture/frame_file.h"
-#include "framework/core/atomic_file.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
-#include "framework/core/side_file.h"
-#include "framework/core/text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
+#include "framework/base/side_file.h"
+#include "framework/base/text.h"
 #include "framework/file/exr_loss.h"
 
 namespace aftershade {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/error.h"
-#include "framework/core/object_keys.h"
+#include "framework/base/error.h"
+#include "framework/document/object_keys.h"
 #include "framework/image/image.h"
 
 namespace aftershade {

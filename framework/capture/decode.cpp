@@ -7,8 +7,8 @@
 #include <span>
 
 #include "framework/capture/capture_grammar.h"
-#include "framework/core/error.h"
-#include "framework/core/parallel.h"
+#include "framework/base/error.h"
+#include "framework/base/parallel.h"
 #include "framework/image/coverage.h"
 #include "framework/image/role.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "framework/capture/capture_grammar.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {

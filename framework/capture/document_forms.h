@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "framework/core/grammar.h"
+#include "framework/document/grammar.h"
 
 namespace aftershade {
 

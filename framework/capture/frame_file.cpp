@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "framework/capture/common_names.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/image/window.h"
 
 namespace aftershade {

@@ -8,7 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/capture/capture_grammar.h"
-#include "framework/core/grammar_reader.h"
+#include "framework/document/grammar_reader.h"
 
 namespace aftershade {
 

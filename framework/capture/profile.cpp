@@ -4,8 +4,8 @@
 
 #include "framework/capture/channel_names.h"
 #include "framework/capture/common_names.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

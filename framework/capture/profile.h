@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "framework/capture/found_channels.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/document.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
 #include "framework/file/exr_file.h"
 
 namespace aftershade {

@@ -1,8 +1,8 @@
 #include "framework/capture/profile_grammar.h"
 
 #include "framework/capture/capture_grammar.h"
-#include "framework/core/grammar_schema.h"
-#include "framework/core/units.h"
+#include "framework/document/grammar_schema.h"
+#include "framework/document/units.h"
 #include "framework/image/camera.h"
 #include "framework/image/image_forms.h"
 

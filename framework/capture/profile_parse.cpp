@@ -4,7 +4,7 @@
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/profile_grammar.h"
-#include "framework/core/grammar_reader.h"
+#include "framework/document/grammar_reader.h"
 #include "framework/image/camera.h"
 #include "framework/image/role.h"
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "framework/capture/capture_grammar.h"
-#include "framework/core/document.h"
-#include "framework/core/error.h"
-#include "framework/core/grammar_reader.h"
-#include "framework/core/text.h"
+#include "framework/document/document.h"
+#include "framework/base/error.h"
+#include "framework/document/grammar_reader.h"
+#include "framework/base/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

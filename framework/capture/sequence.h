@@ -13,7 +13,7 @@
 #include "framework/capture/frame_range.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/image/camera.h"
 
 namespace aftershade {

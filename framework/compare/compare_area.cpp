@@ -7,8 +7,8 @@
 #include <cstddef>
 
 #include "framework/compare/layer_file.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
 #include "framework/file/png_file.h"
 
 namespace aftershade {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "framework/compare/layer_pairs.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/window.h"
 
 namespace aftershade {

@@ -6,7 +6,7 @@
 
 #include "framework/compare/compare_files.h"
 #include "framework/compare/perceptual.h"
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 
 namespace aftershade {
 

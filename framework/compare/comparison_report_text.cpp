@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/compare/comparison_report.h"
-#include "framework/core/text.h"
-#include "framework/core/units.h"
+#include "framework/base/text.h"
+#include "framework/document/units.h"
 
 namespace aftershade {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "framework/file/png_file.h"
 #include "framework/image/window.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "framework/compare/difference_picture.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {

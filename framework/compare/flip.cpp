@@ -10,7 +10,7 @@
 
 #include "framework/compare/flip_band.h"
 #include "framework/compare/row_filter.h"
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 
 namespace aftershade {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 
 namespace aftershade {
 

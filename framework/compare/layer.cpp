@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -11,9 +11,9 @@
 #include <optional>
 #include <utility>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/lfs_pointer.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/lfs_pointer.h"
 #include "framework/file/hdr_file.h"
 #include "framework/file/png_file.h"
 #include "framework/file/stored_colors.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "framework/compare/layer.h"
-#include "framework/core/open_file.h"
+#include "framework/base/open_file.h"
 
 namespace aftershade {
 

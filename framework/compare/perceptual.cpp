@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "framework/compare/ssim.h"
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 #include "framework/image/srgb.h"
 
 namespace aftershade {

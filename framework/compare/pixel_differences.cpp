@@ -9,7 +9,7 @@
 #include "framework/compare/forgiveness.h"
 #include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_pair.h"
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 
 namespace aftershade {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/compare/row_filter.h"
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 
 namespace aftershade {
 

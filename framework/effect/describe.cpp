@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "framework/core/param_type.h"
-#include "framework/core/units.h"
+#include "framework/document/param_type.h"
+#include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_when.h"
 
 namespace aftershade {

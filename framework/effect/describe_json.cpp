@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "framework/core/param_type.h"
+#include "framework/document/param_type.h"
 #include "framework/effect/describe.h"
 
 namespace aftershade {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/shader_source.h"
 
 namespace aftershade {

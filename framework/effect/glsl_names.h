@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "framework/core/glsl_text.h"
+#include "framework/document/glsl_text.h"
 
 namespace aftershade {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "framework/core/units.h"
+#include "framework/document/units.h"
 
 namespace aftershade {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/atomic_file.h"
+#include "framework/base/atomic_file.h"
 
 namespace aftershade {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "framework/core/param_type.h"
+#include "framework/document/param_type.h"
 
 namespace aftershade {
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "framework/core/error.h"
-#include "framework/core/param_type.h"
+#include "framework/base/error.h"
+#include "framework/document/param_type.h"
 #include "framework/effect/std430.h"
 #include "framework/file/picture.h"
 

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "framework/core/param.h"
+#include "framework/document/param.h"
 #include "framework/gpu/texture.h"
 #include "framework/image/image.h"
 #include "framework/image/lut.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "framework/core/glsl_text.h"
-#include "framework/core/param_type.h"
+#include "framework/document/glsl_text.h"
+#include "framework/document/param_type.h"
 #include "framework/effect/param_resources.h"
 
 namespace aftershade {

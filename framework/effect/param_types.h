@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "framework/core/param.h"
+#include "framework/document/param.h"
 
 namespace aftershade {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/glsl_text.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/document/glsl_text.h"
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/usage_check.h"
 

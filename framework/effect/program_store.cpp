@@ -8,10 +8,10 @@
 #include <system_error>
 #include <vector>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/content_hash.h"
-#include "framework/core/error.h"
-#include "framework/core/side_file.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/content_hash.h"
+#include "framework/base/error.h"
+#include "framework/base/side_file.h"
 
 namespace aftershade {
 

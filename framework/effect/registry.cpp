@@ -5,8 +5,8 @@
 #include <system_error>
 #include <utility>
 
-#include "framework/core/data_path.h"
-#include "framework/core/document.h"
+#include "framework/base/data_path.h"
+#include "framework/document/document.h"
 
 namespace aftershade {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <utility>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/path_bounds.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/path_bounds.h"
 #include "framework/effect/glsl_tokens.h"
 
 namespace aftershade {

@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/core/param.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/param.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/param_reader.h"
 #include "framework/effect/param_resources.h"

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <iterator>
 
-#include "framework/core/param_type.h"
+#include "framework/document/param_type.h"
 #include "framework/effect/manifest/manifest_when.h"
 #include "framework/effect/shader_source.h"
 #include "framework/effect/std140.h"

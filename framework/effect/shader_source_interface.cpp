@@ -4,8 +4,8 @@
 #include <sstream>
 #include <utility>
 
-#include "framework/core/param_type.h"
-#include "framework/core/units.h"
+#include "framework/document/param_type.h"
+#include "framework/document/units.h"
 #include "framework/effect/glsl_names.h"
 #include "framework/effect/shader_source.h"
 

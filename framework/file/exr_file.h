@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "framework/core/open_file.h"
+#include "framework/base/open_file.h"
 #include "framework/file/deep_image.h"
 #include "framework/image/color_space.h"
 #include "framework/image/image.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::exr {
 

@@ -1,10 +1,10 @@
 // Shared by the EXR sources of this folder; no other file includes it.
 #pragma once
 
-#include "framework/core/error.h"
-#include "framework/core/memory_limit.h"
-#include "framework/core/open_file.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
+#include "framework/base/open_file.h"
+#include "framework/base/text.h"
 #include "framework/file/deep_image.h"
 #include "framework/file/exr_file.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/file/exr_file.h"
 
 namespace aftershade {

@@ -1,6 +1,6 @@
 #include "framework/file/exr_internal.h"
 
-#include "framework/core/atomic_file.h"
+#include "framework/base/atomic_file.h"
 
 #include <Imath/ImathBox.h>
 #include <Imath/ImathMatrix.h>

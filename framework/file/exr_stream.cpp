@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "framework/core/lfs_pointer.h"
+#include "framework/base/lfs_pointer.h"
 #include "framework/file/exr_internal.h"
 
 namespace aftershade {

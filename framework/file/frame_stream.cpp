@@ -14,7 +14,7 @@
 #include <span>
 #include <utility>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/png_file.h"
 #include "framework/file/quantized.h"
 

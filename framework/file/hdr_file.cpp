@@ -12,7 +12,7 @@
 #include <streambuf>
 #include <string>
 
-#include "framework/core/atomic_file.h"
+#include "framework/base/atomic_file.h"
 
 #define STBI_ONLY_HDR
 #include "framework/file/stb_internal.h"

@@ -1,8 +1,8 @@
 // A temporary file that becomes the output; shared by the writers of this folder.
 #pragma once
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
 
 #include <fmt/format.h>
 

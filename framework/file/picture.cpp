@@ -1,7 +1,7 @@
 #include "framework/file/picture.h"
 
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "framework/file/png_file.h"
 #include "framework/image/srgb.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/image/srgb.h"
 
 namespace aftershade {

@@ -1,9 +1,9 @@
 #include "framework/file/png_file.h"
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/lfs_pointer.h"
-#include "framework/core/memory_limit.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/lfs_pointer.h"
+#include "framework/base/memory_limit.h"
 #include "framework/file/output_stream.h"
 #include "framework/file/quantized.h"
 

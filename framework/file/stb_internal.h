@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::stb {
 

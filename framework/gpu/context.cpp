@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "framework/core/error.h"
-#include "framework/core/memory_limit.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
+#include "framework/base/text.h"
 #include "framework/gpu/context_impl.h"
 #include "framework/gpu/egl_current.h"
 #include "framework/gpu/egl_platform.h"

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <glad/egl.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::gpu {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/context_impl.h"
 
 namespace aftershade::gpu {

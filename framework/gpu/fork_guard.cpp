@@ -4,7 +4,7 @@
 
 #include <pthread.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::gpu {
 namespace {

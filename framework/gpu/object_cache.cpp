@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <glad/gl.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {

@@ -5,7 +5,7 @@
 
 #include <dlfcn.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/egl_current.h"
 
 #if defined(__SANITIZE_ADDRESS__)

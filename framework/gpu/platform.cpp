@@ -6,9 +6,9 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "framework/core/error.h"
-#include "framework/core/memory_limit.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
+#include "framework/base/text.h"
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/osmesa_platform.h"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::gpu {

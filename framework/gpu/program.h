@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/context.h"
 #include "framework/gpu/handle.h"
 

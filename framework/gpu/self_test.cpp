@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/commands.h"
 
 namespace aftershade::gpu {

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "framework/core/memory_limit.h"
+#include "framework/base/memory_limit.h"
 #include "framework/gpu/context_impl.h"
 
 namespace aftershade::gpu {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/memory_limit.h"
+#include "framework/base/memory_limit.h"
 #include "framework/gpu/timer.h"
 
 namespace aftershade::graph {

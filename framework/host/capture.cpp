@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/host/failures.h"
 #include "framework/host/image_data.h"
 #include "framework/image/role.h"

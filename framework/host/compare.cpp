@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "framework/compare/compare_files.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/host/failures.h"
 #include "framework/host/image_data.h"
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <utility>
 
-#include "framework/core/error.h"
-#include "framework/core/memory_limit.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
+#include "framework/base/text.h"
 #include "framework/host/failures.h"
 
 namespace aftershade::host {

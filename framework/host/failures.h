@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "aftershade/error.h"
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 
 namespace aftershade::host {
 

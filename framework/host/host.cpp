@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/program_store.h"
 #include "framework/host/host_data.h"
 #include "framework/host/image_data.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/data_path.h"
+#include "framework/base/data_path.h"
 #include "framework/host/host_data.h"
 #include "framework/host/look_data.h"
 #include "framework/host/rendering.h"

@@ -11,11 +11,11 @@
 
 #include "aftershade/host.h"
 #include "aftershade/look.h"
-#include "framework/core/diagnostics.h"
-#include "framework/core/document.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
 #include "framework/effect/registry.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/look/look.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade::host {
 

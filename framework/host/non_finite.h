@@ -7,7 +7,7 @@
 
 #include "aftershade/look.h"
 #include "framework/host/image_data.h"
-#include "framework/pipeline/nan_policy.h"
+#include "framework/run/nan_policy.h"
 
 namespace aftershade::host {
 

@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/cores.h"
-#include "framework/core/text.h"
+#include "framework/base/cores.h"
+#include "framework/base/text.h"
 #include "framework/gpu/external_texture.h"
 #include "framework/host/non_finite.h"
 #include "framework/image/role.h"
-#include "framework/pipeline/nan_policy.h"
+#include "framework/run/nan_policy.h"
 
 namespace aftershade::host {
 

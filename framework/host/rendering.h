@@ -11,7 +11,7 @@
 #include "framework/host/host_data.h"
 #include "framework/host/image_data.h"
 #include "framework/host/look_data.h"
-#include "framework/pipeline/renderer.h"
+#include "framework/render/renderer.h"
 
 namespace aftershade::host {
 

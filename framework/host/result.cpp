@@ -4,7 +4,7 @@
 #include "aftershade/look.h"
 #include "framework/host/failures.h"
 #include "framework/host/rendering.h"
-#include "framework/pipeline/output.h"
+#include "framework/run/output.h"
 
 namespace aftershade::host {
 

@@ -5,7 +5,7 @@
 
 #include "aftershade/capture.h"
 #include "framework/capture/capture_window.h"
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/host/host_data.h"
 #include "framework/host/image_data.h"
 

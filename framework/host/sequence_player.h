@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/host/rendering.h"
-#include "framework/pipeline/frame_run.h"
+#include "framework/run/frame_run.h"
 
 namespace aftershade::host {
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "framework/core/param_type.h"
+#include "framework/document/param_type.h"
 #include "framework/host/failures.h"
 #include "framework/host/look_data.h"
 

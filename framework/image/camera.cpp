@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "framework/core/grammar_reader.h"
-#include "framework/core/param_type.h"
-#include "framework/core/units.h"
+#include "framework/document/grammar_reader.h"
+#include "framework/document/param_type.h"
+#include "framework/document/units.h"
 
 namespace aftershade {
 

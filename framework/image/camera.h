@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/document.h"
-#include "framework/core/param.h"
+#include "framework/document/document.h"
+#include "framework/document/param.h"
 
 namespace aftershade::grammar {
 class Reader;

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade {
 

@@ -1,5 +1,5 @@
 #include "framework/image/false_color.h"
-#include "framework/core/units.h"
+#include "framework/document/units.h"
 #include "framework/image/srgb.h"
 
 #include <fmt/format.h>

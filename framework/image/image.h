@@ -13,7 +13,7 @@
 #include <utility>
 #include <variant>
 
-#include "framework/core/spare_memory.h"
+#include "framework/base/spare_memory.h"
 
 namespace aftershade {
 

@@ -1,7 +1,7 @@
 // Forms of values that documents about images share.
 #pragma once
 
-#include "framework/core/grammar.h"
+#include "framework/document/grammar.h"
 
 namespace aftershade {
 

@@ -1,7 +1,7 @@
 #include "framework/image/lut.h"
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/units.h"
+#include "framework/base/atomic_file.h"
+#include "framework/document/units.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 
 namespace aftershade {
 

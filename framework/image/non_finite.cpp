@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 
 namespace aftershade {
 

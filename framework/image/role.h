@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/object_keys.h"
+#include "framework/document/object_keys.h"
 #include "framework/image/image.h"
 #include "framework/image/pixel_type.h"
 

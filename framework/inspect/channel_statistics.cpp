@@ -6,7 +6,7 @@
 #include <span>
 #include <type_traits>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/false_color.h"
 #include "framework/image/label_text.h"
 #include "framework/image/role.h"

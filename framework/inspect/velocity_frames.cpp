@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 #include "framework/inspect/velocity_check.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 

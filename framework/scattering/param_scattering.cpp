@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "framework/core/glsl_text.h"
-#include "framework/core/grammar_form.h"
-#include "framework/core/param_type.h"
-#include "framework/core/table_keys.h"
+#include "framework/document/glsl_text.h"
+#include "framework/document/grammar_form.h"
+#include "framework/document/param_type.h"
+#include "framework/document/table_keys.h"
 #include "framework/scattering/scattering_grammar.h"
 
 namespace aftershade {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/param.h"
+#include "framework/document/param.h"
 #include "framework/scattering/scattering_profile.h"
 
 namespace aftershade {

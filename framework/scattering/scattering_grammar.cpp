@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/grammar_form.h"
-#include "framework/core/grammar_schema.h"
+#include "framework/document/grammar_form.h"
+#include "framework/document/grammar_schema.h"
 #include "framework/scattering/scattering_profile.h"
 
 namespace aftershade {

@@ -1,9 +1,9 @@
-// The grammar of scattering profiles, declared once (framework/core/grammar.h).
+// The grammar of scattering profiles, declared once (framework/document/grammar.h).
 #pragma once
 
 #include <string>
 
-#include "framework/core/grammar.h"
+#include "framework/document/grammar.h"
 
 namespace aftershade {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/core/document.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
 
 namespace aftershade {
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "framework/core/data_path.h"
-#include "framework/core/grammar_reader.h"
-#include "framework/core/path_bounds.h"
-#include "framework/core/text.h"
-#include "framework/core/units.h"
+#include "framework/base/data_path.h"
+#include "framework/document/grammar_reader.h"
+#include "framework/base/path_bounds.h"
+#include "framework/base/text.h"
+#include "framework/document/units.h"
 #include "framework/scattering/scattering_grammar.h"
 #include "framework/scattering/scattering_profile.h"
 

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 #include "framework/scene/renderer.h"
 
 namespace aftershade::scene {

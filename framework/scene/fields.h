@@ -1,4 +1,4 @@
-// The grammar of a scene document, declared once (framework/core/grammar.h), and its values as the renderer
+// The grammar of a scene document, declared once (framework/document/grammar.h), and its values as the renderer
 // has them.
 #pragma once
 
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/grammar.h"
-#include "framework/core/grammar_reader.h"
+#include "framework/document/grammar.h"
+#include "framework/document/grammar_reader.h"
 #include "framework/scene/animated.h"
 
 namespace aftershade::scene {

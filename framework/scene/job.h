@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "framework/capture/profile.h"
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/file/exr_file.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/scene.h"

@@ -1,6 +1,6 @@
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/path_bounds.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/path_bounds.h"
 #include "framework/scene/gltf_bytes.h"
 #include "framework/scene/mesh.h"
 

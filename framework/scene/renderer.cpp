@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 #include "framework/image/role.h"
 #include "framework/scene/capture_images.h"
 #include "framework/scene/samples.h"

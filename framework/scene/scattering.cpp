@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 #include "framework/scene/renderer.h"
 #include "framework/scene/scatter_points.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "framework/capture/frame_range.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/scene/scene_reader.h"
 
 namespace aftershade::scene {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/core/document.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
 #include "framework/scattering/scattering_profile.h"
 #include "framework/scene/animated.h"
 #include "framework/scene/mesh.h"

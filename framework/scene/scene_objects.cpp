@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "framework/core/error.h"
-#include "framework/core/units.h"
+#include "framework/base/error.h"
+#include "framework/document/units.h"
 #include "framework/scene/scene_reader.h"
 
 namespace aftershade::scene {

@@ -1,7 +1,7 @@
 #include "framework/scene/scene_schema.h"
 
-#include "framework/core/grammar_schema.h"
-#include "framework/core/grammar_table.h"
+#include "framework/document/grammar_schema.h"
+#include "framework/document/grammar_table.h"
 #include "framework/scene/fields.h"
 
 namespace aftershade::scene {

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "framework/core/names.h"
+#include "framework/base/names.h"
 #include "framework/scene/shading_grid.h"
 
 namespace aftershade::scene {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/scene/blur_extent.h"
 #include "framework/scene/shape.h"
 

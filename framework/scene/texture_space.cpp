@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 #include "framework/image/role.h"
 #include "framework/scene/capture_images.h"
 #include "framework/scene/renderer.h"

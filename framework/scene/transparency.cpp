@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "framework/core/names.h"
+#include "framework/base/names.h"
 #include "framework/scene/samples.h"
 
 namespace aftershade::scene {

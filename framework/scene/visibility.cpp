@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "framework/core/names.h"
-#include "framework/core/parallel.h"
+#include "framework/base/names.h"
+#include "framework/base/parallel.h"
 
 namespace aftershade::scene {
 

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <exception>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::serve {
 

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/error.h"
-#include "framework/core/path_bounds.h"
+#include "framework/base/error.h"
+#include "framework/base/path_bounds.h"
 #include "framework/serve/draw_messages.h"
 #include "framework/serve/drawing_process.h"
 #include "framework/serve/look_model.h"

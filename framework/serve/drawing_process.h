@@ -7,8 +7,8 @@
 #include <string>
 #include <thread>
 
-#include "framework/core/child_process.h"
-#include "framework/core/error.h"
+#include "framework/base/child_process.h"
+#include "framework/base/error.h"
 #include "framework/serve/draw_messages.h"
 
 namespace aftershade::serve {

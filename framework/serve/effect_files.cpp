@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/document.h"
-#include "framework/core/side_file.h"
+#include "framework/base/atomic_file.h"
+#include "framework/document/document.h"
+#include "framework/base/side_file.h"
 #include "framework/serve/refusal.h"
 
 namespace aftershade::serve {

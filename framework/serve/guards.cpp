@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::serve {
 

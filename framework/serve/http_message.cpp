@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 
 namespace aftershade::serve {
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::serve {
 

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/serve/json_spans.h"
 
 namespace aftershade::serve {

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
-#include "framework/core/path_bounds.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/base/path_bounds.h"
 #include "framework/effect/describe.h"
 #include "framework/serve/look_edits.h"
 #include "framework/serve/look_state.h"

@@ -13,10 +13,10 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "framework/capture/capture.h"
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/registry.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/pipeline.h"
+#include "framework/look/look.h"
+#include "framework/look/pipeline.h"
 #include "framework/serve/effect_files.h"
 #include "framework/serve/refusal.h"
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/serve/look_model.h"
 
 namespace aftershade::serve {

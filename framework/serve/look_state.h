@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "framework/capture/capture.h"
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/registry.h"
 
 namespace aftershade::serve {

@@ -2,8 +2,8 @@
 
 #include <system_error>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
 
 namespace aftershade::serve {
 

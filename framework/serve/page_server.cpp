@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/error.h"
-#include "framework/core/text.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/effect/new_effect.h"
 #include "framework/image/role.h"
 #include "framework/serve/truths.h"

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/capture/capture_window.h"
-#include "framework/core/cores.h"
-#include "framework/core/error.h"
+#include "framework/base/cores.h"
+#include "framework/base/error.h"
 #include "framework/effect/pass_program.h"
 #include "framework/effect/program_store.h"
 #include "framework/image/role.h"
-#include "framework/pipeline/nan_policy.h"
+#include "framework/run/nan_policy.h"
 #include "framework/serve/quick_png.h"
 #include "framework/serve/truths.h"
 #include "framework/serve/view_picture.h"

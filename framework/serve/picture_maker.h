@@ -13,10 +13,10 @@
 
 #include "framework/capture/capture.h"
 #include "framework/capture/sequence.h"
-#include "framework/core/status.h"
+#include "framework/base/status.h"
 #include "framework/gpu/context.h"
-#include "framework/pipeline/frame_loader.h"
-#include "framework/pipeline/renderer.h"
+#include "framework/run/frame_loader.h"
+#include "framework/render/renderer.h"
 #include "framework/serve/look_model.h"
 
 namespace aftershade::serve {

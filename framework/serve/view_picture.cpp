@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/display.h"
 #include "framework/image/false_color.h"
 #include "framework/image/role.h"

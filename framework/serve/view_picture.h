@@ -8,8 +8,8 @@
 
 #include "framework/capture/capture.h"
 #include "framework/image/image.h"
-#include "framework/pipeline/pipeline.h"
-#include "framework/pipeline/renderer.h"
+#include "framework/look/pipeline.h"
+#include "framework/render/renderer.h"
 
 namespace aftershade::serve {
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <span>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/scene/mesh.h"
 
 namespace aftershade::visibility {

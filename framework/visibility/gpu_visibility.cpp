@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "framework/core/parallel.h"
+#include "framework/base/parallel.h"
 #include "framework/visibility/bands.h"
 #include "framework/visibility/gpu_scene.h"
 

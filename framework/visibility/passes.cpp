@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade::visibility {
 

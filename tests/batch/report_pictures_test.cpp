@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade::test {

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade {

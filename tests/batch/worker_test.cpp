@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <thread>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade {
 namespace {

@@ -18,8 +18,8 @@
 #include "framework/effect/registry.h"
 #include "framework/gpu/buffer.h"
 #include "framework/gpu/context.h"
-#include "framework/pipeline/look.h"
-#include "framework/pipeline/renderer.h"
+#include "framework/look/look.h"
+#include "framework/render/renderer.h"
 #include "tests/bench/cache_model.h"
 
 #include <glad/gl.h>

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/role.h"
 #include "tests/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/capture/capture_files.h"
 
 namespace aftershade {

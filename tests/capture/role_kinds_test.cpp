@@ -13,7 +13,7 @@
 #include "framework/capture/decode.h"
 #include "framework/capture/encode_role.h"
 #include "framework/capture/profile.h"
-#include "framework/core/grammar.h"
+#include "framework/document/grammar.h"
 #include "framework/image/false_color.h"
 #include "framework/image/role.h"
 #include "tests/documents.h"

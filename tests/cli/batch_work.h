@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/capture/frame_range.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/not_finite.h"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/real_captures.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
 

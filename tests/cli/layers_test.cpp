@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 

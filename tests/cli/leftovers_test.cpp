@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "framework/core/atomic_file.h"
+#include "framework/base/atomic_file.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

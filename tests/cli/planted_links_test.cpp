@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "framework/pipeline/run_state.h"
+#include "framework/run/run_state.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

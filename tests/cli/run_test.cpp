@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/png_file.h"
 #include "tests/backends.h"
 #include "tests/cli/command.h"

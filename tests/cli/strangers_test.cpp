@@ -4,7 +4,7 @@
 
 #include <regex>
 
-#include "framework/core/confinement.h"
+#include "framework/effect/native/confinement.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
 

@@ -8,7 +8,7 @@
 #include "framework/compare/compare_files.h"
 #include "framework/compare/comparison_report.h"
 #include "framework/compare/difference_picture.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/compare/pictures.h"
 
 namespace aftershade::test {

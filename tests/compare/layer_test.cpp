@@ -7,7 +7,7 @@
 #include <map>
 
 #include "framework/compare/layer_file.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/image/role.h"
 #include "tests/compare/pictures.h"
 #include "tests/real_captures.h"

@@ -27,9 +27,9 @@
 #include <sstream>
 #include <thread>
 
-#include "framework/core/child_process.h"
-#include "framework/core/confinement.h"
-#include "framework/core/thread_limit.h"
+#include "framework/base/child_process.h"
+#include "framework/effect/native/confinement.h"
+#include "framework/effect/native/thread_limit.h"
 #include "tests/cli/command.h"
 #include "tests/temporary_folder.h"
 

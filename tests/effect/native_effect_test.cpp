@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/native/native_library.h"
 
 namespace aftershade {

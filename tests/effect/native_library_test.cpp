@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade {

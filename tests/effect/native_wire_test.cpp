@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 
 namespace aftershade {
 namespace {

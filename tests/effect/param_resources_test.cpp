@@ -6,9 +6,9 @@
 #include <map>
 #include <random>
 
-#include "framework/core/param_types/curve.h"
+#include "framework/document/param_types/curve.h"
 #include "framework/file/png_file.h"
-#include "tests/core/param_specs.h"
+#include "tests/document/param_specs.h"
 #include "tests/effect/param_resources_on.h"
 #include "tests/temporary_folder.h"
 

@@ -1,12 +1,12 @@
 // A type of one table entry that reaches shaders by a texture: the type of this file is known to nobody else.
-#include "framework/core/param_type.h"
+#include "framework/document/param_type.h"
 
 #include <memory>
 
-#include "framework/core/glsl_text.h"
+#include "framework/document/glsl_text.h"
 #include "framework/effect/param_types.h"
 #include "framework/effect/shader_source.h"
-#include "tests/core/param_specs.h"
+#include "tests/document/param_specs.h"
 #include "tests/effect/assembly.h"
 #include "tests/effect/effect_folder.h"
 #include "tests/effect/param_resources_on.h"

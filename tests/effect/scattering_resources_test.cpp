@@ -5,7 +5,7 @@
 #include "framework/effect/param_resources.h"
 #include "framework/effect/param_types.h"
 #include "framework/scattering/param_scattering.h"
-#include "tests/core/param_specs.h"
+#include "tests/document/param_specs.h"
 #include "tests/effect/param_resources_on.h"
 #include "tests/reference/burley.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "framework/core/side_file.h"
+#include "framework/base/side_file.h"
 #include "tests/file/image_files.h"
 
 namespace aftershade::test {

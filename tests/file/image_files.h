@@ -1,7 +1,7 @@
 // Files for the image tests: a folder that goes away, patterns, captures.
 #pragma once
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "framework/image/image.h"
 #include "tests/real_captures.h"

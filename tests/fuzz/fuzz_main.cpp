@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "tests/fuzz/targets.h"
 
 namespace {

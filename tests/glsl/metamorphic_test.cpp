@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/units.h"
-#include "framework/pipeline/renderer.h"
+#include "framework/document/units.h"
+#include "framework/render/renderer.h"
 #include "tests/every_effect.h"
 #include "tests/glsl/shader_variant.h"
 #include "tests/temporary_folder.h"

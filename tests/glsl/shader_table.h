@@ -4,7 +4,7 @@
 #include <string>
 
 #include "framework/image/image.h"
-#include "tests/pipeline/effect_fixture.h"
+#include "tests/render/effect_fixture.h"
 
 namespace aftershade::test {
 

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/effect/glsl_tokens.h"
 
 namespace aftershade::test {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <span>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/gpu/gpu_test.h"
 
 namespace aftershade::gpu {

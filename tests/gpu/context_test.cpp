@@ -4,7 +4,7 @@
 #include <set>
 #include <type_traits>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/context_impl.h"
 #include "framework/gpu/platform.h"
 #include "tests/gpu/gpu_test.h"

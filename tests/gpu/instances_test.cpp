@@ -2,7 +2,7 @@
 #include <array>
 #include <span>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/gpu/gpu_test.h"
 
 namespace aftershade::gpu {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/gpu/texture.h"
 #include "tests/gpu/gpu_test.h"
 

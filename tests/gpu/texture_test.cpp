@@ -6,7 +6,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/gpu/gpu_test.h"
 
 namespace aftershade::gpu {

@@ -1,6 +1,6 @@
 #include "framework/inspect/velocity_check.h"
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/inspect/velocity_report.h"
 #include "tests/inspect/velocity_pairs.h"
 #include "tests/synthetic_capture.h"

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/native/native_effect.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/native/native_process.h"

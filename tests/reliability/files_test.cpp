@@ -12,7 +12,7 @@
 #include "framework/capture/capture.h"
 #include "framework/capture/profile.h"
 #include "framework/compare/comparison_report.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "framework/file/hdr_file.h"
 #include "framework/file/png_file.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "framework/core/data_path.h"
-#include "framework/core/param_type.h"
+#include "framework/base/data_path.h"
+#include "framework/document/param_type.h"
 #include "framework/scattering/param_scattering.h"
-#include "tests/core/param_specs.h"
+#include "tests/document/param_specs.h"
 #include "tests/scattering/scattering_profiles.h"
 #include "tests/temporary_folder.h"
 

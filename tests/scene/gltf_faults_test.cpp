@@ -1,4 +1,4 @@
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/scene/gltf_file.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/capture/sequence.h"
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "tests/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 

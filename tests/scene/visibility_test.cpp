@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/scene/triangulate.h"
 #include "tests/scene/scene_text.h"
 

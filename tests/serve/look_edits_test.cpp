@@ -14,8 +14,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/core/atomic_file.h"
-#include "framework/core/error.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
 #include "framework/effect/registry.h"
 #include "framework/serve/look_model.h"
 #include "tests/temporary_folder.h"

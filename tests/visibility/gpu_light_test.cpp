@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/scene/triangulate.h"
 #include "framework/scene/visibility.h"
 #include "tests/gpu/gpu_test.h"

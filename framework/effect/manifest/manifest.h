@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/diagnostics.h"
-#include "framework/core/document.h"
-#include "framework/core/param.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
+#include "framework/document/param.h"
 #include "framework/gpu/commands.h"
 #include "framework/gpu/texture.h"
 
@@ -329,7 +329,7 @@ struct EffectManifest {
     std::optional<NativeSpec> native;
     bool accumulates_subframes = false;  ///< "accumulates": "subframes": runs for each, emits at the last
     std::optional<WarmupSpec> warmup;
-    std::optional<ReachSpec> reach;  ///< nullopt: the passes decide (framework/pipeline/reach.h)
+    std::optional<ReachSpec> reach;  ///< nullopt: the passes decide (framework/look/reach.h)
     std::vector<PresetSpec> presets;
     std::vector<TelemetrySpec> telemetry;
     std::filesystem::path folder;

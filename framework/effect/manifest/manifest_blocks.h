@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/grammar.h"
+#include "framework/document/grammar.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {

@@ -1,7 +1,7 @@
 // The passes of a manifest, and groups of them.
 #include <utility>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/effect/manifest/manifest_blocks.h"
 
 namespace aftershade {

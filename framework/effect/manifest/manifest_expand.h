@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "framework/core/grammar_schema.h"
-#include "framework/core/param_grammar.h"
-#include "framework/core/schema_pieces.h"
-#include "framework/core/text.h"
-#include "framework/core/units.h"
+#include "framework/document/grammar_schema.h"
+#include "framework/document/param_grammar.h"
+#include "framework/document/schema_pieces.h"
+#include "framework/base/text.h"
+#include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_blocks.h"
 #include "framework/effect/param_types.h"
 #include "framework/image/camera.h"

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "framework/core/data_path.h"
+#include "framework/base/data_path.h"
 #include "framework/effect/manifest/manifest_check.h"
 #include "framework/effect/manifest/manifest_expand.h"
 #include "framework/effect/shader_source.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/data_path.h"
+#include "framework/base/data_path.h"
 #include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/effect/manifest/manifest_parser.h"
 

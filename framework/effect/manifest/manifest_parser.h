@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/grammar_reader.h"
+#include "framework/document/grammar_reader.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/manifest/manifest_blocks.h"
 

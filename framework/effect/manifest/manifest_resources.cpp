@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "framework/core/units.h"
+#include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_parser.h"
 #include "framework/effect/manifest/manifest_when.h"
 

@@ -1,7 +1,7 @@
 // The section "telemetry" of effect.json: numbers out of textures.
 #include <algorithm>
 
-#include "framework/core/text.h"
+#include "framework/base/text.h"
 #include "framework/effect/manifest/manifest_parser.h"
 
 namespace aftershade {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/core/param_type.h"
+#include "framework/document/param_type.h"
 #include "framework/effect/manifest/manifest_parser.h"
 
 namespace aftershade {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/core/param.h"
+#include "framework/document/param.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/param_reader.h"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/native/native_library.h"
 
 namespace aftershade {

@@ -1,6 +1,6 @@
 #include "framework/effect/native/native_effect.h"
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/native/native_call.h"
 #include "framework/effect/native/native_host.h"
 #include "framework/effect/native/native_library.h"

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "framework/core/param.h"
-#include "framework/core/status.h"
+#include "framework/document/param.h"
+#include "framework/base/status.h"
 #include "framework/image/camera.h"
 
 namespace aftershade {

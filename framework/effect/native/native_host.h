@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/native/native_effect.h"
 #include "framework/plugin/aftershade_plugin.h"
 

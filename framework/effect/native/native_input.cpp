@@ -1,7 +1,7 @@
 // What a plug-in may ask of the host in prepare.
 #include <algorithm>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/native/native_call.h"
 
 namespace aftershade {

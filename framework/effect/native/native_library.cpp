@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/native/native_host.h"
 #include "framework/effect/native/native_process.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/core/status.h"
+#include "framework/base/status.h"
 #include "framework/plugin/aftershade_plugin.h"
 
 namespace aftershade {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "framework/core/diagnostics.h"
+#include "framework/base/diagnostics.h"
 #include "framework/effect/native/native_call.h"
 
 namespace aftershade {

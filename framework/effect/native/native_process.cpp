@@ -16,11 +16,11 @@
 #include <map>
 #include <string_view>
 
-#include "framework/core/child_process.h"
-#include "framework/core/error.h"
-#include "framework/core/text.h"
-#include "framework/core/thread_limit.h"
-#include "framework/core/units.h"
+#include "framework/base/child_process.h"
+#include "framework/base/error.h"
+#include "framework/base/text.h"
+#include "framework/effect/native/thread_limit.h"
+#include "framework/document/units.h"
 #include "framework/effect/native/native_call.h"
 #include "framework/effect/native/native_wire.h"
 

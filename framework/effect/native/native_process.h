@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/core/confinement.h"
-#include "framework/core/status.h"
+#include "framework/effect/native/confinement.h"
+#include "framework/base/status.h"
 #include "framework/effect/native/native_effect.h"
 
 namespace aftershade {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "framework/core/diagnostics.h"
-#include "framework/core/error.h"
+#include "framework/base/diagnostics.h"
+#include "framework/base/error.h"
 #include "framework/effect/native/native_library.h"
 
 namespace aftershade {

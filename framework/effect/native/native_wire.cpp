@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "framework/core/error.h"
+#include "framework/base/error.h"
 #include "framework/effect/param_types.h"
 
 namespace aftershade {

@@ -1,0 +1,83 @@
+// The path of a file: a picture or a colour table. What is in it the host reads.
+#include <filesystem>
+
+#include "framework/document/grammar.h"
+#include "framework/document/param_type.h"
+#include "framework/document/schema_pieces.h"
+#include "framework/base/text.h"
+
+namespace aftershade {
+
+namespace file_type {
+
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    declaration.keys.push_back(
+        grammar::required("kind", grammar::choice({"image", "lut"}), "A picture, or a table of colours."));
+    declaration.keys.push_back(grammar::optional("space", grammar::choice({"srgb", "data"}),
+                                                 "Encoding of a PNG's values.", "\"srgb\""));
+    declaration.rules.push_back(grammar::when({.key = "kind",
+                                               .value = "\"lut\"",
+                                               .absent = {"space"},
+                                               .fault = "only a file of kind image has a 'space'"}));
+}
+
+void read_declaration(const SpecReader& reader, ParamSpec& spec) {
+    if (reader.node.find("kind")->string == "lut") spec.file_kind = FileKind::lut;
+    const Node* space = reader.node.find("space");
+    spec.file_is_data = space && space->string == "data";
+}
+
+/// A manifest's own files lie in its effect's folder.
+bool check_default(const ParamSpec& spec, const Node& node, const std::string& label,
+                   Diagnostics& diagnostics) {
+    const std::filesystem::path path = std::get<std::string>(spec.default_value);
+    const std::filesystem::path normal = path.lexically_normal();
+    if (path.empty() || (path.is_relative() && *normal.begin() != "..")) return true;
+    diagnostics.error(node.place,
+                      label + ".default: '" + path.string() + "' must lie in the effect's folder");
+    return false;
+}
+
+std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
+    if (!node.is_string()) return reader.wrong_kind(node, "the path of a file, or \"\" for none");
+    if (node.string.find('\0') != std::string::npos) return reader.fault(node, "a path holds no zero byte");
+    return node.string;
+}
+
+schema::json literal(const ParamSpec&, const schema::LiteralParts&) {
+    return schema::text();
+}
+
+std::string type_text(const ParamSpec& spec) {
+    return spec.file_kind == FileKind::lut ? "file: .cube" : "file: EXR or PNG";
+}
+
+std::string default_text(const ParamSpec& spec) {
+    const auto& path = std::get<std::string>(spec.default_value);
+    return path.empty() ? "none" : json_string(path);
+}
+
+schema::json describe(const ParamSpec& spec) {
+    return {{"kind", spec.file_kind == FileKind::lut ? "lut" : "image"}};
+}
+
+constexpr ParamTypeTraits type() {
+    ParamTypeTraits traits;
+    traits.name = "file";
+    traits.home = ParamHome::file;
+    traits.declare = declare;
+    traits.read_declaration = read_declaration;
+    traits.check_default = check_default;
+    traits.parse = parse;
+    traits.schema = literal;
+    traits.type_text = type_text;
+    traits.default_text = default_text;
+    traits.describe = describe;
+    return traits;
+}
+
+}  // namespace file_type
+
+constinit const ParamTypeTraits kFileParam = file_type::type();
+
+}  // namespace aftershade

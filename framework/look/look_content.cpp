@@ -1,0 +1,104 @@
+#include "framework/look/look_content.h"
+
+#include <exception>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "framework/document/param_type.h"
+#include "framework/effect/shader_source.h"
+
+namespace aftershade {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The name too, but not where it lies: another checkout gives the same hash.
+void add_file(const fs::path& file, std::string& text) {
+    constexpr std::uintmax_t kMaxBytes = 1u << 30;  // of a table of colours, the largest of them
+    text += "\n" + file.filename().string() + "\n" + read_text_file(file, ExitCode::usage, kMaxBytes);
+}
+
+/// The code of a native effect, without its tests.
+bool is_native_source(const fs::path& file) {
+    const std::string extension = file.extension().string();
+    return (extension == ".c" || extension == ".cpp" || extension == ".h") &&
+           !file.stem().string().ends_with("_test");
+}
+
+/// A shader file and all that it includes, each once.
+void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<fs::path>& files,
+                   int depth = 0) {
+    if (depth >= kMaxIncludeDepth || !files.insert(file.lexically_normal()).second) return;
+    std::string fault;
+    std::istringstream lines(read_regular_file(file, kMaxShaderFileBytes, fault));
+    if (!fault.empty()) throw Error(ExitCode::usage, file.string() + ": " + fault);
+    for (std::string line; std::getline(lines, line);) {
+        const auto include = parse_include(line);
+        if (!include || include->name == "pass" || include->name == "predicate") continue;
+        gather_shader((include->is_shared ? glsl_folder : file.parent_path()) / include->name, glsl_folder,
+                      files, depth + 1);
+    }
+}
+
+std::set<fs::path> files_of(const EffectManifest& manifest, const fs::path& glsl_folder) {
+    std::set<fs::path> files{manifest.folder / "effect.json"};
+    for (const ModuleSpec& part : manifest.modules) files.insert(part.folder / "module.json");
+    for (const PassSpec& pass : manifest.passes) {
+        for (const std::string& shader : {pass.shader, pass.vertex})
+            if (!shader.empty()) gather_shader(pass.folder / shader, glsl_folder, files);
+        if (!pass.lists.empty())
+            gather_shader(shader_path(pass, ShaderFile::main, glsl_folder), glsl_folder, files);
+        if (!pass.over.empty())
+            gather_shader(shader_path(pass, ShaderFile::vertex, glsl_folder), glsl_folder, files);
+    }
+    if (manifest.native)
+        for (const auto& entry : fs::directory_iterator(manifest.folder))
+            if (is_native_source(entry.path())) files.insert(entry.path());
+    return files;
+}
+
+std::vector<fs::path> files_of_values(const PipelineStep& step) {
+    std::vector<fs::path> files;
+    for (const ParamSpec& spec : step.manifest->params)
+        for (const ParamValue& value : step.known_values(spec))
+            if (is_file_type(spec.type) && !std::get<std::string>(value).empty())
+                files.emplace_back(std::get<std::string>(value));
+    if (step.mask && !step.mask->file.empty()) files.push_back(step.mask->file);
+    return files;
+}
+
+}  // namespace
+
+std::vector<fs::path> files_of_pipeline(const Pipeline& pipeline, const fs::path& glsl_folder) {
+    std::set<fs::path> files;
+    for (const PipelineStep& step : pipeline.steps) {
+        for (fs::path& file : files_of_values(step)) files.insert(std::move(file));
+        try {
+            files.merge(files_of(*step.manifest, glsl_folder));
+        } catch (const std::exception&) {
+            // A shader that cannot be read is a fault of its effect, reported where it is compiled.
+        }
+    }
+    return {files.begin(), files.end()};
+}
+
+std::string content_of_values(const PipelineStep& step) {
+    std::string text;
+    for (const ParamSpec& spec : step.manifest->params)
+        if (spec.type->content)
+            for (const ParamValue& value : step.known_values(spec)) text += spec.type->content(value);
+    for (const fs::path& file : files_of_values(step)) add_file(file, text);
+    return text;
+}
+
+std::string content_of_effect(const EffectManifest& manifest, const fs::path& glsl_folder) {
+    std::string text;
+    for (const fs::path& file : files_of(manifest, glsl_folder)) add_file(file, text);
+    return text;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,26 @@
+// What a look's effects and values are made of, as text to be hashed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/effect/manifest/manifest.h"
+#include "framework/look/pipeline.h"
+
+namespace aftershade {
+
+/// Every file that the pipeline's effects and values name: manifests, modules, shaders with what they
+/// include, native sources, pictures, tables and masks.
+std::vector<std::filesystem::path> files_of_pipeline(const Pipeline& pipeline,
+                                                     const std::filesystem::path& glsl_folder);
+
+/// What the files hold that the step's parameters and its mask name, and scattering profiles by what they
+/// say. Throws Error(ExitCode::usage) for a file that cannot be read.
+std::string content_of_values(const PipelineStep& step);
+
+/// The manifest, its modules' manifests, native sources, and every shader with what it includes: each file's
+/// name and bytes, whatever folder it lies in. Throws Error(ExitCode::usage) for a file that cannot be read.
+std::string content_of_effect(const EffectManifest& manifest, const std::filesystem::path& glsl_folder);
+
+}  // namespace aftershade

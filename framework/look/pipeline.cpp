@@ -1,0 +1,304 @@
+#include "framework/look/pipeline.h"
+
+#include <algorithm>
+
+#include "framework/capture/channel_names.h"
+#include "framework/base/error.h"
+#include "framework/document/param_type.h"
+#include "framework/base/text.h"
+#include "framework/document/units.h"
+#include "framework/image/role.h"
+
+namespace aftershade {
+
+namespace {
+
+bool contains(const std::vector<std::string>& list, const std::string& item) {
+    return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+void add_once(std::vector<std::string>& list, const std::string& item) {
+    if (!contains(list, item)) list.push_back(item);
+}
+
+std::string list_channels(const std::vector<std::string>& channels) {
+    constexpr std::size_t kShown = 40;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(channels.size(), kShown); ++i) text += (i ? ", " : "") + channels[i];
+    if (channels.size() > kShown) text += " and " + std::to_string(channels.size() - kShown) + " more";
+    return text;
+}
+
+/// Roles that the step's values, mix and mask are taken from.
+std::vector<std::string> host_roles(const PipelineStep& step) {
+    std::vector<std::string> roles = roles_of(step.mix);
+    for (const auto& [name, value] : step.values)
+        for (const std::string& role : roles_of(value)) add_once(roles, role);
+    if (step.mask && !step.mask->role.empty()) add_once(roles, step.mask->role);
+    if (step.mask && !step.mask->objects.empty())
+        add_once(roles, step.mask->names_objects() ? coverage_role(step.mask->objects) : kObjectIdRole);
+    return roles;
+}
+
+}  // namespace
+
+bool PipelineStep::may_take(const InputSpec& input) const {
+    return std::all_of(input.when.begin(), input.when.end(), [&](const WhenSpec& condition) {
+        const auto value = values.find(condition.subject);
+        const ParamSpec* spec = manifest->find_param(condition.subject);
+        if (value == values.end() && !spec->from.empty()) return true;
+        if (value != values.end() && !std::holds_alternative<ParamValue>(value->second)) return true;
+        const ParamValue& known =
+            value == values.end() ? spec->default_value : std::get<ParamValue>(value->second);
+        return std::find(condition.values.begin(), condition.values.end(), known) != condition.values.end();
+    });
+}
+
+std::vector<ParamValue> PipelineStep::known_values(const ParamSpec& spec) const {
+    const auto asked = values.find(spec.name);
+    if (asked == values.end()) return {with_file(spec, spec.default_value, manifest->folder)};
+    if (const auto* literal = std::get_if<ParamValue>(&asked->second)) return {*literal};
+    std::vector<ParamValue> known;
+    if (const auto* keyed = std::get_if<KeyedValue>(&asked->second))
+        for (const auto& [frame, value] : keyed->keys) known.push_back(value);
+    return known;
+}
+
+std::vector<std::string> Pipeline::capture_roles() const {
+    std::vector<std::string> roles{kColorRole};
+    for (const PipelineStep& step : steps) {
+        for (const InputSpec& input : step.manifest->inputs) {
+            const InputSource& source = step.inputs.at(input.name);
+            if (source.step < 0 && input.frame == 0 && step.may_take(input)) add_once(roles, source.output);
+        }
+        for (const auto& [output, source] : step.before)
+            if (source.step < 0) add_once(roles, source.output);
+        for (const std::string& role : host_roles(step)) add_once(roles, role);
+    }
+    return roles;
+}
+
+std::vector<std::string> Pipeline::object_names() const {
+    std::vector<std::string> names;
+    const auto add = [&](const TableKey& key) {
+        if (!key.name.empty()) add_once(names, key.name);
+    };
+    for (const PipelineStep& step : steps) {
+        for (const auto& [name, value] : step.values)
+            if (const auto* depth = std::get_if<DepthValue>(&value))
+                std::for_each(depth->objects.begin(), depth->objects.end(), add);
+        for (const ParamSpec& spec : step.manifest->params)
+            for (const ParamValue& value : step.known_values(spec))
+                if (is_param_buffer(spec.type))
+                    for (const auto& [key, row] : spec.type->table.rows(value).rows) add(key);
+    }
+    return names;
+}
+
+std::vector<std::string> Pipeline::neighbour_roles(int offset) const {
+    std::vector<std::string> roles;
+    for (const PipelineStep& step : steps)
+        for (const InputSpec& input : step.manifest->inputs)
+            if (input.frame == offset && step.may_take(input))
+                add_once(roles, step.inputs.at(input.name).output);
+    return roles;
+}
+
+std::set<int> Pipeline::neighbour_offsets() const {
+    std::set<int> offsets;
+    for (const PipelineStep& step : steps)
+        for (const InputSpec& input : step.manifest->inputs)
+            if (input.frame != 0 && step.may_take(input)) offsets.insert(input.frame);
+    return offsets;
+}
+
+const Capture* FrameInputs::at(int offset) const {
+    if (offset == 0) return capture;
+    if (offset == -1) return previous;
+    if (offset == 1) return next;
+    const auto found = further.find(offset);
+    return found == further.end() ? nullptr : found->second;
+}
+
+void FrameInputs::set(int offset, const Capture* at_offset) {
+    (offset == 0 ? capture : offset == -1 ? previous : offset == 1 ? next : further[offset]) = at_offset;
+}
+
+bool Pipeline::writes_role(const std::string& role) const {
+    for (const PipelineStep& step : steps)
+        for (const OutputSpec& output : step.manifest->outputs)
+            if (output.role == role) return true;
+    return false;
+}
+
+bool Pipeline::has_history() const {
+    return std::any_of(steps.begin(), steps.end(),
+                       [](const PipelineStep& step) { return step.manifest->has_history(); });
+}
+
+bool Pipeline::has_foreign() const {
+    return std::any_of(steps.begin(), steps.end(), [](const PipelineStep& step) { return step.is_foreign; });
+}
+
+int Pipeline::last_accumulating_step() const {
+    for (int i = int(steps.size()) - 1; i >= 0; --i)
+        if (steps[std::size_t(i)].manifest->accumulates_subframes) return i;
+    return -1;
+}
+
+ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder) {
+    if (!is_file_type(spec.type)) return value;
+    auto& path = std::get<std::string>(value);
+    if (!path.empty()) path = (folder / path).string();
+    return value;
+}
+
+const ParamSpec& mix_spec() {
+    static const ParamSpec spec = [] {
+        ParamSpec mix;
+        mix.name = "mix";
+        mix.doc = "0: the image as it was before the step, 1: as the step made it.";
+        mix.default_value = 1.0;
+        mix.min = 0;
+        mix.max = 1;
+        return mix;
+    }();
+    return spec;
+}
+
+std::optional<MissingRole> find_missing_role(const Pipeline& pipeline,
+                                             const std::vector<std::string>& roles) {
+    for (const PipelineStep& step : pipeline.steps) {
+        for (const InputSpec& input : step.manifest->inputs) {
+            const InputSource& source = step.inputs.at(input.name);
+            if (!input.optional && source.step < 0 && !contains(roles, source.output))
+                return MissingRole{"step '" + step.name + "' (effect " + step.manifest->id + ")",
+                                   source.output};
+        }
+        for (const auto& [output, source] : step.before)
+            if (source.step < 0 && !contains(roles, source.output))
+                return MissingRole{"the mix of step '" + step.name + "'", source.output};
+        for (const std::string& role : host_roles(step))
+            if (!contains(roles, role) && !is_coverage_role(role))
+                return MissingRole{"a value or the mask of step '" + step.name + "'", role};
+    }
+    if (!contains(roles, kColorRole) && !pipeline.writes_role(kDisplayRole))
+        return MissingRole{"the output", kColorRole};
+    return std::nullopt;
+}
+
+std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline) {
+    std::vector<StaleLayers> found;
+    std::vector<std::string> before;  // steps so far that change color
+    for (const PipelineStep& step : pipeline.steps) {
+        const auto& inputs = step.manifest->inputs;
+        if (std::ranges::any_of(inputs,
+                                [](const InputSpec& i) { return i.role == kColorRole && i.layer > 0; }) &&
+            !before.empty())
+            found.push_back({step.name, before});
+        if (std::ranges::any_of(step.manifest->outputs,
+                                [](const OutputSpec& output) { return output.role == kColorRole; }))
+            before.push_back(step.name);
+    }
+    return found;
+}
+
+namespace {
+
+/// "--profile blender or vray finds it; --layer 'B' has it; --role depth=FILE reads it from a file of its
+/// own; ..."
+std::string remedies(const std::string& role, const CaptureHeader& header, const CaptureReader* reader) {
+    std::string text;
+    if (reader) {
+        const RoleElsewhere found = reader->find_elsewhere(header, role);
+        if (!found.profiles.empty()) text += "--profile " + joined(found.profiles, " or ") + " finds it; ";
+        if (!found.layers.empty())
+            text += "--layer " + list_of_names(found.layers) +
+                    (found.layers.size() == 1 ? " has it; " : " have it; ");
+    }
+    if (kind_of_role(role) == RoleKind::motion)
+        if (const auto motion = channels_of_motion(header.channels); !motion.empty())
+            text += list_of_names(motion, "and") + (motion.size() == 1 ? " looks" : " look") +
+                    " like motion, whose unit, direction and sign no name says, so it is read only as "
+                    "declared; ";
+    return text + "--role " + role + "=FILE reads it from a file of its own; \"channels\": {\"" + role +
+           "\": {\"channels\": [...]}} in capture.json names its channels";
+}
+
+}  // namespace
+
+Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader) {
+    return Error(ExitCode::capture,
+                 header.path.string() + ": " + missing.who + " needs the role '" + missing.role +
+                     "', which the profile '" + header.profile + "' does not find among the channels " +
+                     list_channels(header.channels) +
+                     (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") + " (" +
+                     remedies(missing.role, header, reader) + ")");
+}
+
+void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
+                           const CaptureReader* reader) {
+    if (const auto missing = find_missing_role(pipeline, header.roles))
+        throw missing_role(*missing, header, reader);
+}
+
+namespace {
+
+std::string described(const ValueSource& source) {
+    if (std::holds_alternative<KeyedValue>(source)) return ", by keys";
+    if (const auto* camera = std::get_if<CameraValue>(&source)) return ", from camera." + camera->field;
+    if (std::holds_alternative<DepthValue>(source)) return ", from depth";
+    return "";
+}
+
+}  // namespace
+
+ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const FrameInputs& frame) {
+    const std::string label = step.name + "." + spec.name;
+    if (const auto asked = step.values.find(spec.name); asked != step.values.end())
+        return {evaluate(asked->second, spec, label, *frame.capture),
+                step.origins.at(spec.name) + described(asked->second)};
+    if (spec.from.starts_with(kFromCamera)) {
+        const std::string field = spec.from.substr(kFromCamera.size());
+        if (auto captured = camera_value(spec, field, label, frame.capture->header))
+            return {std::move(*captured), frame.capture->header.camera.origin(field)};
+    }
+    return {with_file(spec, spec.default_value, step.manifest->folder), "the manifest"};
+}
+
+namespace {
+
+/// A relation that the capture's or keyed values break; those of the look alone were checked before.
+void require_relations(const PipelineStep& step, const ParamSet& params, const FrameInputs& frame) {
+    for (const RelationFault& fault : check_relations(step.manifest->params, params))
+        throw Error(ExitCode::capture, frame.capture->header.path.string() + ": " +
+                                           relation_message(step.name, fault) +
+                                           " (set both in the look, or correct the capture's camera)");
+}
+
+}  // namespace
+
+ParamSet resolve_params(const PipelineStep& step, const FrameInputs& frame) {
+    ParamSet params;
+    for (const ParamSpec& spec : step.manifest->params)
+        params.set(spec.name, resolve_param(step, spec, frame).value);
+    require_relations(step, params, frame);
+    if (frame.scale != 1)
+        for (const ParamSpec& spec : step.manifest->params)
+            params.set(spec.name, scale_pixels(spec, params.get(spec.name), frame.scale));
+    return params;
+}
+
+std::string explain_params(const Pipeline& pipeline, const FrameInputs& frame) {
+    std::string text;
+    for (const PipelineStep& step : pipeline.steps)
+        for (const ParamSpec& spec : step.manifest->params) {
+            const ResolvedValue resolved = resolve_param(step, spec, frame);
+            const std::string unit = spec.unit.empty() ? "" : " " + spec.unit;
+            text += step.name + "." + spec.name + " = " + format_value(spec, resolved.value) + unit + "   [" +
+                    resolved.origin + "]\n";
+        }
+    return text;
+}
+
+}  // namespace aftershade

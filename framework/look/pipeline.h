@@ -1,0 +1,178 @@
+// A look bound to its effects: what each step reads, and which values were chosen.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "framework/capture/capture.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
+#include "framework/document/param.h"
+#include "framework/effect/manifest/manifest.h"
+#include "framework/effect/registry.h"
+#include "framework/look/look.h"
+#include "framework/look/value_source.h"
+
+namespace aftershade {
+
+namespace gpu {
+class Texture;
+}  // namespace gpu
+
+/// Where an input takes its image from.
+struct InputSource {
+    int step = -1;       ///< index of an earlier step; -1: the capture
+    std::string output;  ///< that step's output or texture; for the capture, the role
+};
+
+/// One use of an effect. Values are, from the most to the least binding: --set, look, preset; below them come
+/// the capture and the manifest.
+struct PipelineStep {
+    std::string name;
+    const EffectManifest* manifest = nullptr;
+    std::map<std::string, InputSource> inputs;   ///< by input name
+    std::map<std::string, ValueSource> values;   ///< asked for by the user; paths of files are complete
+    std::map<std::string, std::string> origins;  ///< of each of `values`: "--set", "the look", "preset fast"
+    std::map<std::string, Place> places;         ///< of each of `values`
+    ValueSource mix = ParamValue(1.0);
+    std::optional<MaskSpec> mask;
+    /// By output: the image of that role before the step, which `mix` and `mask` let through. Empty where the
+    /// step has neither.
+    std::map<std::string, InputSource> before;
+    bool is_foreign = false;  ///< the effect is not one of the shipped ones
+
+    /// Whether the input's conditions may hold: with values that differ from frame to frame they may.
+    bool may_take(const InputSpec& input) const;
+    /// Every value that the parameter may have, whatever the frame, but for what only the capture holds: the
+    /// user's, by keys all of them, else the manifest's. Paths of files are complete.
+    std::vector<ParamValue> known_values(const ParamSpec& spec) const;
+};
+
+/// "bokeh.coc": an intermediate to be written out.
+struct Tap {
+    std::string step;
+    std::string texture;
+    std::string text() const { return step + "." + texture; }
+};
+
+struct Pipeline {
+    std::vector<PipelineStep> steps;
+    std::vector<Tap> taps;
+
+    /// Roles that some step takes from the capture, required or not, and `color` for the outputs.
+    std::vector<std::string> capture_roles() const;
+    /// Objects that parameters of steps name, for which object_id must hold the hashes of names; masks take
+    /// their coverage instead.
+    std::vector<std::string> object_names() const;
+    /// Roles that some input takes from the capture `offset` frames after, or before where it is negative.
+    std::vector<std::string> neighbour_roles(int offset) const;
+    /// Offsets of the captures that some input takes, without 0.
+    std::set<int> neighbour_offsets() const;
+    bool writes_role(const std::string& role) const;
+    bool has_history() const;
+    /// Whether some effect is not one of the shipped ones.
+    bool has_foreign() const;
+    /// The last step whose effect accumulates sub-frames; -1: none does.
+    int last_accumulating_step() const;
+};
+
+/// The captures of one frame. [refers to what the caller keeps]
+struct FrameInputs {
+    const Capture* capture = nullptr;
+    const Capture* previous = nullptr;  ///< of the same shot, where some input wants it
+    const Capture* next = nullptr;
+    std::map<int, const Capture*> further{};  ///< the like, by offset, where that is not -1 or 1
+    bool begins_shot = false;                 ///< a cut: nothing before it counts
+    int subframe = 0;
+    int subframe_count = 1;
+    const Capture* centre = nullptr;  ///< of several sub-frames: the one at the middle of the exposure
+    double scale = 1;  ///< of the capture's pixels relative to those that values in px refer to
+    double fps = 24;
+    /// Fills the texture of a capture's image that is not in memory; false where it is. Empty: each is.
+    std::function<bool(const std::string& role, int offset, gpu::Texture& texture)> fill{};
+
+    /// Called once the images are in textures and nothing reads them any more, if there is one sub-frame.
+    std::function<void()> uploaded{};
+
+    const Capture* at(int offset) const;
+    void set(int offset, const Capture* at_offset);
+    /// Whether there is a capture at that offset, with an image of that role.
+    bool has_image(const std::string& role, int offset) const {
+        const Capture* const from = at(offset);
+        return from && from->images.contains(role);
+    }
+};
+
+/// A value of a program's, above the look's own. Messages say value.place.
+struct ValueOverride {
+    std::string name;  ///< "bokeh.f_number"
+    Node value;
+};
+
+/// One "--set step.param=value" or "--tap step.texture", as given.
+struct PipelineOptions {
+    std::vector<std::string> sets;
+    std::vector<std::string> taps;
+    std::vector<ValueOverride> overrides{};
+};
+
+/// Binds a look. Each input takes its role from the nearest earlier step that outputs it, else from the
+/// capture (from the capture alone where the manifest has "from": "capture"), unless the step's "in" says
+/// otherwise. Faults go to `diagnostics`, all of them; the result is
+/// usable if there was none.
+Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const PipelineOptions& options,
+                       Diagnostics& diagnostics);
+
+/// The value with the path of a file, where it is one, named from `folder`; "" stays "".
+ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder);
+
+/// What every step takes from the host: "mix", 0 to 1.
+const ParamSpec& mix_spec();
+
+/// A role that the pipeline requires and a capture lacks.
+struct MissingRole {
+    std::string who;  ///< "step 'bokeh' (effect bokeh)"
+    std::string role;
+};
+/// `roles`: those that the capture has.
+std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const std::vector<std::string>& roles);
+
+/// With the remedies; `reader` may be null.
+Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader);
+
+/// A step that reads the color of layers behind the picture, and earlier steps that change the picture's
+/// color, which changes no layer.
+struct StaleLayers {
+    std::string step;
+    std::vector<std::string> changed_by;
+};
+std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline);
+
+/// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
+/// role, the channels that the file does have, and what would give the role: other profiles and layers, found
+/// by the reader that the header comes from, where it is given.
+void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
+                           const CaptureReader* reader = nullptr);
+
+/// A parameter of a step for one frame, in the declared unit, and where it is from: "the look, by keys".
+struct ResolvedValue {
+    ParamValue value;
+    std::string origin;
+};
+/// As resolve_params(), of one parameter, at full scale.
+ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const FrameInputs& frame);
+
+/// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the
+/// default; values in px times frame.scale. Throws Error(ExitCode::capture) where the capture's values do not
+/// fit.
+ParamSet resolve_params(const PipelineStep& step, const FrameInputs& frame);
+
+/// One line per parameter of every step: its value, its unit, and where the value is from.
+std::string explain_params(const Pipeline& pipeline, const FrameInputs& frame);
+
+}  // namespace aftershade

@@ -1,0 +1,58 @@
+// The forms that a value may have in a look, and what each gives for one frame.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "framework/capture/capture.h"
+#include "framework/document/param.h"
+
+namespace aftershade {
+
+/// {"keys": {"1": 2.0, "24": 5.6}, "interpolation": "linear"}: by frame, constant before the first key and
+/// after the last.
+struct KeyedValue {
+    enum class Interpolation { linear, smooth, step };  ///< smooth eases in and out of each key
+    std::map<int, ParamValue> keys;
+    Interpolation interpolation = Interpolation::linear;
+};
+
+/// {"from": "camera.focus_distance"}: of the capture; it is an error where the capture lacks it.
+struct CameraValue {
+    std::string field;  ///< "focus_distance", "lens_model"
+};
+
+/// {"from": "depth", "uv": [0.5, 0.5]} or {"from": "depth", "object": 2}: metres along the view axis, of one
+/// point of the display window (u right, v down, from 0 to 1) or the median over the pixels of objects.
+struct DepthValue {
+    std::optional<std::array<double, 2>> uv;
+    std::vector<TableKey> objects;  ///< one entry of a document: a name, or ids and ranges of ids
+};
+
+using ValueSource = std::variant<ParamValue, KeyedValue, CameraValue, DepthValue>;
+
+/// Reads a value for `spec` in any form. `label` names the parameter in messages.
+std::optional<ValueSource> parse_value_source(const ParamSpec& spec, const Node& node,
+                                              const std::string& label, Diagnostics& diagnostics);
+
+/// The value as a document would write it.
+std::string format_source(const ValueSource& source);
+
+/// Roles that the value is taken from: depth, object_id.
+std::vector<std::string> roles_of(const ValueSource& source);
+
+/// The value for one frame. Throws Error(ExitCode::capture) naming `label` where the capture lacks what it is
+/// taken from or gives a value outside the range of `spec`.
+ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std::string& label,
+                    const Capture& capture);
+
+/// The camera's value for a parameter in the parameter's unit; nullopt where it is not known. Throws
+/// Error(ExitCode::capture) for one outside the range of `spec`.
+std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string& field,
+                                       const std::string& label, const CaptureHeader& header);
+
+}  // namespace aftershade

@@ -1,0 +1,133 @@
+// From a look's steps to a frame graph, with the way back from its parts to the steps.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "framework/base/status.h"
+#include "framework/effect/param_reader.h"
+#include "framework/effect/pass_program.h"
+#include "framework/graph/frame_graph.h"
+#include "framework/render/built_graph.h"
+#include "framework/render/graph_bindings.h"
+#include "framework/render/graph_key.h"
+#include "framework/render/pass_programs.h"
+#include "framework/look/pixel_shape.h"
+#include "framework/render/step_files.h"
+
+namespace aftershade {
+
+/// What every graph of a pipeline is made with. [refers to what the caller keeps]
+struct GraphTools {
+    gpu::Context& context;
+    ProgramCache& programs;
+    StepFiles& files;
+    bool telemetry = false;          ///< keep the textures of the steps' statistics
+    StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
+    bool keeps_steps = false;        ///< each texture has memory of its own
+    bool fuses_passes = true;        ///< passes that can run as one do
+    int compile_threads = 0;         ///< beside the caller's; with one, another makes textures
+    bool marks_undrawn = false;      ///< partial textures have every bit set where no pass draws
+    bool primes = false;             ///< what the first draws compile is made before them
+};
+
+/// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these
+/// parameters; Error(ExitCode::usage) for a tap that no pass writes, and for files.
+std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFrame& frame);
+
+struct StepBuild;
+
+/// The binding of the block in glsl/host/square_pixels.frag.
+inline constexpr int kStretchBinding = 0;
+/// The passes that convert between grids, and their targets, are named after the texture that they read, with
+/// one of these suffixes.
+inline constexpr const char* kToSquarePixels = "@square pixels";
+inline constexpr const char* kToStoredPixels = "@stored pixels";
+
+/// Adds the passes of one step after the other to a graph.
+class GraphBuilder {
+public:
+    GraphBuilder(const GraphTools& tools, const GraphFrame& frame);
+
+    std::unique_ptr<BuiltGraph> build();
+
+private:
+    void add_step(int index);
+    std::vector<std::string> present_inputs(int index);
+    graph::TextureHandle import(const std::string& role, int offset = 0);
+    graph::TextureHandle resolve(const InputSource& source, int offset = 0);
+    void use_grid_of(int step);
+    /// What `source` is, `handle`, on the grid that is in use.
+    graph::TextureHandle on_grid(graph::TextureHandle handle, const InputSource& source);
+    void declare(StepBuild& build);
+    void require_written(const StepBuild& build, const InputSpec& input, graph::TextureHandle handle) const;
+    /// An input is level 0 of a texture that has more.
+    int input_level(graph::TextureHandle handle) const;
+    bool shows_undrawn(const StepBuild& build, const TextureSpec& spec) const;
+    void declare_texture(StepBuild& build, const TextureSpec& spec);
+    void declare_buffer(StepBuild& build, const BufferSpec& spec);
+    void declare_params(StepBuild& build);
+    void declare_native_tables(StepBuild& build);
+    void add_pass(StepBuild& build, const PassSpec& spec);
+    void add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns);
+    void add_clear(StepBuild& build, const PassSpec& spec);
+    void add_copy_pass(StepBuild& build, const PassSpec& spec);
+    void add_mix(StepBuild& build);
+    graph::TextureHandle mask_of(const StepBuild& build);
+    void add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,
+                  graph::TextureHandle to);
+    void keep_histories(StepBuild& build);
+    std::array<float, 2> listed_size(const StepBuild& build, const TileListSpec& list) const;
+    std::vector<std::byte> tiles_block(const StepBuild& build, const PassSpec& spec,
+                                       const PassBindings& bindings) const;
+    std::array<float, 4> tile_grid_size(const StepBuild& build, const PassSpec& spec,
+                                        const PassBindings& bindings) const;
+    graph::TextureHandle write_target(const StepBuild& build, const PassBindings& bindings,
+                                      const std::string& name, const std::string& pass);
+    /// Says how the targets that are cleared become so again where a pass over tiles has drawn.
+    void add_wipes(const StepBuild& build, const PassSpec& spec, const PassBindings& bindings,
+                   graph::Pass& pass);
+    void set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const;
+    /// Gives the pass that is added next a block that is filled for each frame.
+    void bind_block(const StepBuild& build, BlockKind kind, graph::Pass& pass);
+    void keep_results();
+    void keep_taps();
+    void keep_statistics();
+
+    const GraphTools& tools_;
+    GraphFrameReader frame_;
+    const Pipeline& pipeline_;
+    const GraphFrameReader::SquareGrid square_;
+    const SquareSteps square_steps_;
+    bool is_square_ = false;  // the grid in use, of the step that is added
+    bool is_single_ = false;  // whether the step runs once a frame
+    int width_ = 0;           // of that grid
+    int height_ = 0;
+    graph::FrameGraph graph_;
+    PassPrograms programs_;
+    std::map<std::vector<std::string>, std::function<std::shared_ptr<const gpu::Program>()>>
+        wipe_programs_;  // by defines
+    std::unique_ptr<BuiltGraph> built_;
+    std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;   // by role and offset
+    std::map<std::tuple<int, int, bool>, graph::TextureHandle> converted_;  // by texture, version, is_single_
+    std::map<int, graph::TextureHandle> masks_;                             // by step
+    std::vector<ParamBinding> params_;
+    std::vector<NativeTableBinding> native_tables_;
+    std::vector<BlockBinding> blocks_;
+};
+
+/// Extent of a grid over a working grid of width x height px.
+std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height);
+/// One number for all four, or four.
+std::array<double, 4> four_values(const std::vector<double>& values);
+/// A count's number, or the value of the int parameter that it names.
+int count_value(const CountSpec& count, const ParamReader& params);
+
+}  // namespace aftershade

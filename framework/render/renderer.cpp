@@ -1,0 +1,326 @@
+#include "framework/render/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "framework/base/error.h"
+#include "framework/base/spare_memory.h"
+#include "framework/gpu/timer.h"
+#include "framework/image/role.h"
+#include "framework/render/graph_builder.h"
+#include "framework/render/history_file.h"
+#include "framework/look/pixel_shape.h"
+
+namespace aftershade {
+
+namespace {
+
+bool infinity_allowed(const std::string& role) {
+    return std::isinf(find_role(role)->outside);
+}
+
+void audit_input(const std::string& role, const Image& image, std::vector<AuditFinding>& findings) {
+    if (image.type() != ComponentType::float32) return;
+    audit_values({image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture",
+                  "capture." + role},
+                 findings);
+}
+
+/// Integer textures hold ids and packed bits, of which no value is wrong.
+graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<AuditFinding>& findings) {
+    std::map<std::string, std::string> role_of_output;
+    for (const PipelineStep& step : pipeline.steps)
+        for (const OutputSpec& output : step.manifest->outputs)
+            role_of_output[step.name + "." + output.name] = output.role;
+    return [role_of_output, &findings](const std::string& pass, const std::string& texture,
+                                       const gpu::Texture& target) {
+        const gpu::TextureDesc& desc = target.desc();
+        if (gpu::is_integer(desc.format)) return;
+        // What these write has been looked at.
+        if (texture.ends_with(kToSquarePixels) || texture.ends_with(kToStoredPixels)) return;
+        const auto role = role_of_output.find(texture);
+        const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
+        const std::vector<float> values = target.read_floats();
+        audit_values({values, desc.width, gpu::channel_count(desc.format), infinity, pass, texture},
+                     findings);
+    };
+}
+
+}  // namespace
+
+PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
+                                   const std::filesystem::path& data_folder, NativeSources natives)
+    : PipelineRenderer(context, pipeline, std::make_shared<ProgramCache>(context, data_folder / "glsl"),
+                       natives) {}
+
+PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
+                                   std::shared_ptr<ProgramCache> programs, NativeSources natives)
+    : context_(context),
+      pipeline_(pipeline),
+      programs_(std::move(programs)),
+      status_(natives.status),
+      natives_(natives) {}
+
+PipelineRenderer::~PipelineRenderer() {
+    drop_spare_memory();
+}
+
+void PipelineRenderer::resolve(const FrameInputs& frame) {
+    params_.clear();
+    for (const PipelineStep& step : pipeline_.steps) params_.push_back(resolve_params(step, frame));
+}
+
+void PipelineRenderer::prepare(const FrameInputs& frame, const std::vector<std::string>& roles) {
+    resolve(frame);
+    const bool valid = frame.subframe > 0 || frame_fault_.empty();
+    if (!valid) natives_.reset();
+    natives_.prepare(pipeline_, frame, params_, valid);
+    const GraphFrame graph_frame{pipeline_, frame, params_, natives_, roles};
+    const bool is_stale = std::exchange(is_stale_, false);
+    if (built_ && !is_stale && built_->key.holds(graph_frame)) return;
+    // The old textures go before the new ones come, unless what they hold lives on.
+    std::unique_ptr<BuiltGraph> old = std::move(built_);
+    if (!pipeline_.has_history()) old.reset();
+    build(frame, roles, false);
+    if (old) built_->executor->take_history_from(*old->executor);
+}
+
+namespace {
+
+void require_room(const Pipeline& pipeline, const CaptureHeader& header, int most_px) {
+    const SquareSteps steps(pipeline, header.pixel_aspect);
+    const Window window = stretched(header.data_window, header.display_window, steps.stretch());
+    if (steps.stretch().is_none() || std::max(window.width(), window.height()) <= most_px) return;
+    throw Error(ExitCode::capture,
+                header.path.string() + ": " + steps.note(pipeline, header) +
+                    ", and a side may have at most " + std::to_string(most_px) +
+                    " with this renderer (correct pixelAspectRatio, or resample the frame to square pixels)");
+}
+
+}  // namespace
+
+void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::string>& roles, bool primes) {
+    require_room(pipeline_, frame.capture->header, context_.info().texture_side_px);
+    built_ = build_graph(
+        {context_, *programs_, files_, telemetry_, status_, keeps_steps_,
+         fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_, keeps_steps_ || audit_, primes},
+        {pipeline_, frame, params_, natives_, roles});
+    ++graphs_built_;
+    set_hooks();
+}
+
+bool PipelineRenderer::can_build_ahead() const {
+    const bool reports = status_ && status_->active();
+    return !built_ && !reports && std::ranges::none_of(pipeline_.steps, [](const PipelineStep& step) {
+        return step.manifest->native || std::ranges::any_of(step.values, [](const auto& value) {
+                   return !roles_of(value.second).empty();
+               });
+    });
+}
+
+void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles) {
+    // Of a role that is missing, rendering says what to do.
+    if (!can_build_ahead() || find_missing_role(pipeline_, frame.capture->header.roles)) return;
+    try {
+        resolve(frame);
+        build(frame, roles, true);
+    } catch (const Error& error) {
+        built_.reset();
+        if (error.exit_code() == ExitCode::memory) throw;
+    }
+}
+
+double PipelineRenderer::feed(const FrameInputs& frame, const std::vector<std::string>& roles,
+                              const FrameBefore& before, int first_pass) {
+    gpu::Timer timer(context_);
+    timer.start();
+    built_->feed({{pipeline_, frame, params_, natives_, roles}, before, files_, first_pass});
+    return timer.stop_ms();
+}
+
+void PipelineRenderer::compile_on_threads(int threads) {
+    compile_threads_ = CompileAhead::useful_threads(context_, threads);
+}
+
+int PipelineRenderer::programs_compiled_ahead() const {
+    return built_ && built_->ahead ? built_->ahead->programs_made() : 0;
+}
+
+void PipelineRenderer::set_audit(bool audit) {
+    audit_ = audit;
+    if (audit) guard_loops();
+}
+
+void PipelineRenderer::guard_loops() {
+    if (loop_guard_ || context_.info().renderer.find("llvmpipe") == std::string::npos) return;
+    loop_guard_.emplace(context_, sizeof(std::uint32_t), "loop guard");
+    programs_->guard_loops();
+}
+
+namespace {
+
+/// The step of a pass of the graph, "step.pass" or "step.pass[2]"; nullptr for the host's own passes.
+const PipelineStep* step_of(const Pipeline& pipeline, const std::string& pass) {
+    for (const PipelineStep& step : pipeline.steps)
+        if (pass.starts_with(step.name + ".")) return &step;
+    return nullptr;
+}
+
+}  // namespace
+
+void PipelineRenderer::set_hooks() {
+    graph::Executor::PassHooks hooks;
+    const bool reports = status_ && status_->active();
+    if (reports || built_->ahead)
+        hooks.begins = [this, reports](const std::string& pass) {
+            const PipelineStep* step = reports ? step_of(pipeline_, pass) : nullptr;
+            if (step)
+                status_->write(status_of_pass(*step, pass.substr(step->name.size() + 1), "draw", status_));
+            if (built_->ahead) built_->ahead->take(pass);
+        };
+    if (loop_guard_) {
+        hooks.storage = {&*loop_guard_, kLoopGuardBinding};
+        hooks.ended = [this](const std::string& pass) { require_whole_loops(pass); };
+    }
+    built_->executor->set_hooks(std::move(hooks));
+}
+
+void PipelineRenderer::require_whole_loops(const std::string& pass) {
+    const std::vector<std::byte> word = loop_guard_->read();
+    if (std::ranges::all_of(word, [](std::byte byte) { return byte == std::byte{0}; })) return;
+    loop_guard_->clear(0);
+    throw Error(ExitCode::effect,
+                "pass '" + pass +
+                    "': llvmpipe ended its loops after 65,535 iterations, so the picture is wrong; end the "
+                    "loops earlier, or split the work over a pass with \"repeat\"");
+}
+
+void PipelineRenderer::run_passes(bool timed, graph::PassRange range, FrameResult& result) {
+    const auto observer = audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{};
+    const auto times = built_->executor->run(timed, observer, range);
+    result.times.insert(result.times.end(), times.begin(), times.end());
+    if (!status_ || !status_->active()) return;
+    WorkStatus between;
+    between.frame = status_->current().frame;
+    status_->write(between);
+}
+
+FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector<std::string>& roles,
+                                     bool timed) {
+    const bool is_first = frame.subframe == 0;
+    mixes_drawn_.clear();
+    if (saved_) begin_from_saved(frame);
+    if (is_first) frame_fault_ = history_fault(frame);
+    prepare(frame, roles);
+    if (saved_) restore(*std::exchange(saved_, nullptr));
+    if (is_first && !frame_fault_.empty()) built_->executor->clear_history();
+    FrameResult result;
+    result.messages = natives_.take_messages();
+    const float aspect = frame.capture->header.pixel_aspect;
+    if (aspect != std::exchange(aspect_, aspect))
+        if (std::string note = SquareSteps(pipeline_, aspect).note(pipeline_, frame.capture->header);
+            !note.empty())
+            result.messages.push_back("note: " + std::move(note));
+    for (const std::string& warning : programs_->take_warnings())
+        result.messages.push_back("warning: " + warning);
+    if (pipeline_.has_history() && is_first) result.history_reset = frame_fault_;
+
+    const bool accumulates = built_->first_single_pass > 0 && frame.subframe_count > 1;
+    double upload_ms = 0;
+    if (accumulates) {
+        const bool valid = !is_first || frame_fault_.empty();
+        upload_ms +=
+            feed(frame, roles, {valid, valid && last_ ? std::optional(last_->camera) : std::nullopt}, 0);
+        run_passes(timed, {0, built_->first_single_pass}, result);
+    }
+    const CaptureHeader& header = frame.capture->header;
+    last_ = {header.frame, header.data_window, header.camera, header.pixel_aspect};
+    is_partial_ = accumulates && frame.subframe + 1 < frame.subframe_count;
+    if (is_partial_) return result;
+
+    FrameInputs once = frame;
+    if (accumulates && frame.centre) {
+        once.capture = frame.centre;
+        resolve(once);
+    }
+    const bool valid = frame_fault_.empty();
+    const int first_pass = accumulates ? built_->first_single_pass : 0;
+    upload_ms += feed(once, roles, {valid, valid ? camera_before_ : std::nullopt}, first_pass);
+    camera_before_ = once.capture->header.camera;
+    if (audit_)
+        for (const GraphBinding& binding : built_->bindings)
+            if (const auto* input = std::get_if<CaptureBinding>(&binding))
+                audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
+    if (frame.uploaded && frame.subframe_count == 1) frame.uploaded();
+    run_passes(timed, {first_pass, -1}, result);
+    read_results(roles, timed, result);
+    if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
+    if (telemetry_) {
+        result.telemetry = read_telemetry(header.frame);
+        result.telemetry->passes = result.times;
+    }
+    steps_drawn_ = int(pipeline_.steps.size());
+    mixes_drawn_ = mixes();
+    return result;
+}
+
+std::vector<std::string> PipelineRenderer::mixes() const {
+    std::vector<std::string> mixes;
+    for (const PipelineStep& step : pipeline_.steps) mixes.push_back(format_source(step.mix));
+    return mixes;
+}
+
+int PipelineRenderer::first_changed_step(const std::vector<ParamSet>& before,
+                                         const std::vector<std::string>& mixes_before) const {
+    const std::vector<std::string> now = mixes();
+    const std::size_t count = std::min({before.size(), params_.size(), now.size(), mixes_before.size()});
+    std::size_t step = 0;
+    while (step < count && before[step] == params_[step] && now[step] == mixes_before[step]) ++step;
+    return int(step);
+}
+
+FrameResult PipelineRenderer::render_again(const FrameInputs& frame, const std::vector<std::string>& roles,
+                                           bool timed) {
+    const bool may_keep = keeps_steps_ && built_ && !is_stale_ && !saved_ && !audit_ &&
+                          !pipeline_.has_history() && frame.subframe_count == 1 &&
+                          params_.size() == pipeline_.steps.size() && !mixes_drawn_.empty();
+    if (!may_keep) return render(frame, roles, timed);
+    const std::vector<ParamSet> before = params_;
+    resolve(frame);
+    natives_.reset();
+    natives_.prepare(pipeline_, frame, params_, false);
+    const GraphFrame graph_frame{pipeline_, frame, params_, natives_, roles};
+    if (!built_->key.holds(graph_frame)) return render(frame, roles, timed);
+
+    const int first = first_changed_step(before, mixes_drawn_);
+    const bool is_same = first == int(pipeline_.steps.size());
+    const int first_pass =
+        is_same ? built_->executor->graph().pass_count() : built_->first_pass_of_step[std::size_t(first)];
+    // Until it is drawn, nothing stands for these values.
+    mixes_drawn_.clear();
+    FrameResult result;
+    result.messages = natives_.take_messages();
+    gpu::Timer timer(context_);
+    timer.start();
+    built_->feed({graph_frame, {false, std::nullopt}, files_, first_pass, true});
+    const double upload_ms = timer.stop_ms();
+    run_passes(timed, {first_pass, -1}, result);
+    read_results(roles, timed, result);
+    if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
+    steps_drawn_ = int(pipeline_.steps.size()) - first;
+    mixes_drawn_ = mixes();
+    return result;
+}
+
+std::string PipelineRenderer::graph_dot() const {
+    return built_ ? graph::to_dot(built_->executor->graph(), built_->executor->compiled()) : "";
+}
+
+std::pair<std::uint64_t, std::uint64_t> PipelineRenderer::graph_bytes() const {
+    if (!built_) return {0, 0};
+    const graph::CompiledGraph& compiled = built_->executor->compiled();
+    return {compiled.bytes, compiled.bytes_unaliased};
+}
+
+}  // namespace aftershade

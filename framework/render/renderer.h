@@ -1,0 +1,167 @@
+// Runs a pipeline over captures on one GL context.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "framework/capture/capture.h"
+#include "framework/effect/pass_program.h"
+#include "framework/gpu/buffer.h"
+#include "framework/graph/executor.h"
+#include "framework/render/audit.h"
+#include "framework/render/native_steps.h"
+#include "framework/look/pipeline.h"
+#include "framework/render/step_files.h"
+#include "framework/render/telemetry.h"
+
+namespace aftershade {
+
+struct FrameResult {
+    std::map<std::string, Image> images;      ///< by role: what the steps made of the roles asked for
+    std::set<std::string> finite_roles;       ///< of images that were seen to hold no NaN and no infinity
+    std::map<std::string, Image> taps;        ///< by "step.texture"
+    std::vector<graph::PassTime> times;       ///< upload, each pass, readback; empty unless timed
+    std::vector<AuditFinding> audit;          ///< in the order of the passes; empty unless audited
+    std::optional<Window> region;             ///< the part of the display window that was requested
+    std::vector<std::string> messages;        ///< what native code logged
+    std::optional<FrameTelemetry> telemetry;  ///< where it was requested
+    std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
+};
+
+/// A frame graph for one size and one choice of passes (framework/render/built_graph.h).
+struct BuiltGraph;
+struct FrameBefore;
+struct SavedHistory;
+
+/// Builds the frame graph on the first frame and again only when something changes that the build looked at:
+/// the size, the presence of an image, a value that chooses passes, sizes or programs.
+/// [the context's thread]
+class PipelineRenderer {
+public:
+    PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
+                     const std::filesystem::path& data_folder, NativeSources natives = {});
+    /// The same with programs that several renderers of one context share.
+    PipelineRenderer(gpu::Context& context, const Pipeline& pipeline, std::shared_ptr<ProgramCache> programs,
+                     NativeSources natives = {});
+    ~PipelineRenderer();
+
+    /// Builds the first frame's graph and has the driver make its programs, before the frame's pixels are
+    /// known: images of `frame` are empty. What render() finds different then, it builds again, and what
+    /// fails here, fails there. Does nothing unless can_build_ahead(). Throws Error(ExitCode::memory).
+    void build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles);
+    /// Whether there is no graph yet, and no step needs more than a frame's header: native code is called
+    /// once a frame, and values may be measured in the pixels.
+    bool can_build_ahead() const;
+    /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
+    /// each sub-frame; the others run once, with the last, over `frame.centre`. `roles` are read back where a
+    /// step makes them; of sub-frames before the last the result is empty. Frames follow each other in
+    /// `frame.capture->header.frame`; anything else restarts history. Throws Error(ExitCode::effect).
+    FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
+    /// The last call's frame once more, of which nothing changed but what the pipeline's values give: steps
+    /// before the first that differs are not drawn again, if keep_steps() was called and no step has a
+    /// history. The captures must be the same objects with the same pixels.
+    FrameResult render_again(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
+    /// Gives each texture memory of its own, so that it lives until the next frame. [before the first frame]
+    void keep_steps() { keeps_steps_ = true; }
+    /// Whether passes that can run as one do, unless keep_steps() or set_audit() want each by itself.
+    /// [before the first frame]
+    void fuse_passes(bool fuses) { fuses_passes_ = fuses; }
+    /// How many threads beside this one compile what a new graph needs, where a driver compiles on the
+    /// processor. [before the first frame]
+    void compile_on_threads(int threads);
+    /// Of the last graph: what those threads compiled.
+    int programs_compiled_ahead() const;
+    /// Of the last frame: how many of the pipeline's steps were drawn.
+    int steps_drawn() const { return steps_drawn_; }
+    /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
+    /// Guards loops, too. [before the first frame]
+    void set_audit(bool audit);
+    /// A loop that llvmpipe ended before its time, without which the picture is wrong, is an error of its
+    /// pass. Does nothing with other renderers, which end none. [before the first frame]
+    void guard_loops();
+    /// Reads the textures of the effects' telemetry back after each frame; they share no memory then.
+    /// [before the first frame]
+    void set_telemetry(bool telemetry) { telemetry_ = telemetry; }
+
+    /// Results of these roles are not read back: result_texture() has them, FrameResult::images has not.
+    void keep_on_gpu(std::vector<std::string> roles) { kept_on_gpu_ = std::move(roles); }
+    /// What the last frame made of a role that was requested; nullptr where no step makes it. Until the next.
+    const gpu::Texture* result_texture(const std::string& role) const;
+    /// Call after a change of the pipeline that the renderer refers to, unless only values changed that
+    /// decide over no input, mix or mask. History lives on where it fits.
+    void pipeline_changed() { is_stale_ = true; }
+
+    /// What the next frame would read of this one (framework/render/history_file.h). Throws
+    /// Error(ExitCode::output).
+    void save_history(const std::filesystem::path& path, const std::string& fingerprint = "");
+    /// Takes up where a run over the frames before this one ended. Throws Error(ExitCode::usage) where the
+    /// file is damaged or of another look, effect version, size or last frame: at once, or by render().
+    void load_history(const std::filesystem::path& path);
+    /// Of a history that was loaded for a frame that could not be read.
+    void drop_loaded_history();
+
+    /// The graph of the last frame in Graphviz's language; "" before the first.
+    std::string graph_dot() const;
+    /// How often the graph was built.
+    int graphs_built() const { return graphs_built_; }
+    /// Of the last frame: bytes of all textures and buffers, and what they would be without aliasing.
+    std::pair<std::uint64_t, std::uint64_t> graph_bytes() const;
+
+private:
+    struct Last {
+        int frame = 0;
+        Window window;
+        Camera camera;
+        float pixel_aspect = 1;
+    };
+    void resolve(const FrameInputs& frame);
+    int first_changed_step(const std::vector<ParamSet>& before, const std::vector<std::string>& mixes) const;
+    std::vector<std::string> mixes() const;
+    void prepare(const FrameInputs& frame, const std::vector<std::string>& roles);
+    void build(const FrameInputs& frame, const std::vector<std::string>& roles, bool primes);
+    std::string history_fault(const FrameInputs& frame) const;
+    double feed(const FrameInputs& frame, const std::vector<std::string>& roles, const FrameBefore& before,
+                int first_pass);
+    void set_hooks();
+    void require_whole_loops(const std::string& pass);
+    void run_passes(bool timed, graph::PassRange range, FrameResult& result);
+    FrameTelemetry read_telemetry(int frame) const;
+    void read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result);
+    void begin_from_saved(const FrameInputs& frame);
+    void restore(const SavedHistory& saved);
+
+    gpu::Context& context_;
+    const Pipeline& pipeline_;
+    std::shared_ptr<ProgramCache> programs_;
+    StatusWriter* status_ = nullptr;
+    std::optional<gpu::Buffer> loop_guard_;  // before the graph, whose passes it is bound to
+    StepFiles files_;
+    NativeSteps natives_;
+    std::vector<ParamSet> params_;
+    std::unique_ptr<BuiltGraph> built_;
+    int graphs_built_ = 0;
+    std::optional<Last> last_;             // capture, sub-frames too
+    bool is_partial_ = false;              // of the last frame not all sub-frames came
+    std::optional<Camera> camera_before_;  // of the last whole frame
+    float aspect_ = 1;                     // of the pixels of the frame before
+    std::string frame_fault_;              // why this frame restarted history
+    std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
+    bool audit_ = false;
+    bool telemetry_ = false;
+    std::vector<std::string> kept_on_gpu_;
+    bool is_stale_ = false;
+    bool keeps_steps_ = false;
+    bool fuses_passes_ = true;
+    int compile_threads_ = 0;
+    int steps_drawn_ = 0;
+    std::vector<std::string> mixes_drawn_;  // by step, as a document would write them
+};
+
+}  // namespace aftershade

@@ -1,0 +1,32 @@
+// What parameters and masks bring from files.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "framework/effect/param_reader.h"
+#include "framework/effect/param_resources.h"
+#include "framework/look/pipeline.h"
+
+namespace aftershade {
+
+/// Files that a pipeline's steps name, each read once. [one thread at a time]
+class StepFiles {
+public:
+    /// What the file parameters of a step hold. Throws Error(ExitCode::usage) with every fault of the files.
+    const std::map<std::string, ParamFile>& of_step(int index, const PipelineStep& step,
+                                                    const ParamReader& params);
+    /// The mask of a step: one channel, r32f. Throws Error(ExitCode::usage).
+    const Image& mask_of(const std::filesystem::path& path);
+
+private:
+    struct Loaded {
+        std::map<std::string, std::string> paths;
+        std::map<std::string, ParamFile> files;
+    };
+    std::map<int, Loaded> steps_;
+    std::map<std::filesystem::path, Image> masks_;
+};
+
+}  // namespace aftershade

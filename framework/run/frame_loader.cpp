@@ -1,0 +1,214 @@
+#include "framework/run/frame_loader.h"
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "framework/capture/capture_window.h"
+#include "framework/base/error.h"
+#include "framework/image/role.h"
+#include "framework/run/nan_policy.h"
+#include "framework/look/pixel_shape.h"
+
+namespace aftershade {
+
+namespace {
+
+void add_missing(std::vector<std::string>& list, const std::vector<std::string>& items) {
+    for (const std::string& item : items)
+        if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+}
+
+/// The region of the display window at full scale, with what is rendered around it, in the coordinates of the
+/// windows.
+Window region_with_margin(const RunOptions& run, const std::optional<RegionNeeds>& needs,
+                          const CaptureHeader& header) {
+    const Window& display = header.display_window;
+    const auto grown = [&](int margin) -> Window {
+        return {display.min_x + run.region->min_x - margin, display.min_y + run.region->min_y - margin,
+                display.min_x + run.region->max_x + margin, display.min_y + run.region->max_y + margin};
+    };
+    if (run.region_margin_px) return grown(*run.region_margin_px);
+    const Window common = intersection(grown(0), header.data_window);
+    // Without a pixel to write, it is left to crop_capture() to say so.
+    if (common.width() < 1 || common.height() < 1) return grown(0);
+    if (!needs) return header.data_window;
+    const int divisor = run.scale_divisor;
+    const Window part = window_with_needs(scaled_window(grown(0), display, divisor), *needs,
+                                          scaled_window(header.data_window, display, divisor));
+    return {display.min_x + (part.min_x - display.min_x) * divisor,
+            display.min_y + (part.min_y - display.min_y) * divisor,
+            display.min_x + (part.max_x + 1 - display.min_x) * divisor - 1,
+            display.min_y + (part.max_y + 1 - display.min_y) * divisor - 1};
+}
+
+/// Adds how long it lived.
+class BusyTime {
+public:
+    explicit BusyTime(std::atomic<double>& sum_ms) : sum_ms_(sum_ms), start_(Trace::Clock::now()) {}
+    ~BusyTime() {
+        sum_ms_ += std::chrono::duration<double, std::milli>(Trace::Clock::now() - start_).count();
+    }
+    BusyTime(const BusyTime&) = delete;
+    BusyTime& operator=(const BusyTime&) = delete;
+
+private:
+    std::atomic<double>& sum_ms_;
+    Trace::Clock::time_point start_;
+};
+
+}  // namespace
+
+FrameLoader::FrameLoader(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline,
+                         const RunOptions& run, std::vector<std::string> roles)
+    : sequence_(sequence),
+      reader_(reader),
+      pipeline_(pipeline),
+      run_(run),
+      files_(sequence, reader, pipeline),
+      roles_(std::move(roles)),
+      region_needs_(run.region ? needs_of_region(pipeline, 1.0 / run.scale_divisor) : std::nullopt),
+      objects_(pipeline) {
+    for (const int offset : pipeline.neighbour_offsets())
+        add_missing(roles_, pipeline.neighbour_roles(offset));
+    if (!run.frames.empty() && !is_missing(0))
+        for (const int file : files_.numbers(run.frames[0])) request(file);
+}
+
+FrameLoader::~FrameLoader() {
+    for (const auto& [file, read] : reads_) read.wait();
+}
+
+bool FrameLoader::is_missing(std::size_t index) const {
+    return files_.is_missing(run_.frames[index]);
+}
+
+bool FrameLoader::begins_shot(std::size_t index) const {
+    return files_.begins_shot(run_.frames[index]);
+}
+
+Capture FrameLoader::read(int file) const {
+    const BusyTime busy(busy_ms_);
+    const TraceScope traced(run_.trace, "decode", "file " + std::to_string(file));
+    Capture capture;
+    try {
+        capture = reader_.read(file, roles_);
+    } catch (const UnknownObject& error) {
+        throw objects_.placed(error);
+    }
+    require_capture_roles(pipeline_, capture.header, &reader_);
+    objects_.look_at(capture);
+    {
+        const TraceScope scan(run_.trace, "scan", "file " + std::to_string(file));
+        apply_nan_policy(run_.on_nan, capture);  // before scaling, which spreads NaN
+    }
+    place(capture, file);
+    return capture;
+}
+
+void FrameLoader::place(Capture& capture, int file) const {
+    if (run_.region) {
+        const PixelStretch stretch = SquareSteps(pipeline_, capture.header.pixel_aspect).stretch();
+        const auto needs = region_needs_ ? in_stored_pixels(*region_needs_, stretch) : std::nullopt;
+        crop_capture(capture, region_with_margin(run_, needs, capture.header));
+    }
+    scale_capture(capture, run_.scale_divisor);
+    const int subframe = (file % sequence_.subframes + sequence_.subframes) % sequence_.subframes;
+    capture.header.frame = (file - subframe) / sequence_.subframes;
+}
+
+std::optional<Capture> FrameLoader::outline(std::size_t index) const {
+    if (is_missing(index) || subframe_count() > 1 || !pipeline_.neighbour_offsets().empty())
+        return std::nullopt;
+    Capture capture;
+    try {
+        const int file = files_.number(run_.frames[index], 0);
+        capture.header = reader_.read_header(file);
+        place(capture, file);
+    } catch (const Error&) {
+        return std::nullopt;  // take() says why
+    }
+    const auto& there = capture.header.roles;
+    for (const std::string& role : roles_)
+        if (is_coverage_role(role) || std::ranges::find(there, role) != there.end()) capture.images[role];
+    return capture;
+}
+
+void FrameLoader::request(int file) {
+    if (reads_.contains(file)) return;
+    reads_[file] = std::async(std::launch::async, [this, file]() -> CapturePointer {
+                       return std::make_shared<Capture>(read(file));
+                   }).share();
+}
+
+void FrameLoader::give_images(std::size_t index, const CapturePointer& capture,
+                              const std::vector<std::string>& roles, long holders) {
+    const int file = files_.number(run_.frames[index], 0);
+    const auto wants_it = [&](int frame) {
+        const std::vector<int> numbers = files_.numbers(frame);
+        return std::ranges::find(numbers, file) != numbers.end();
+    };
+    // As far ahead as an input's `frame` goes.
+    constexpr std::size_t kMostFrames = 3;
+    const auto later = std::span(run_.frames).subspan(index + 1);
+    const bool is_wanted = std::ranges::any_of(later.first(std::min(kMostFrames, later.size())), wants_it);
+    if (is_wanted || run_.missing == MissingFrame::hold || run_.region) return;
+    reads_.erase(file);
+    if (capture.use_count() > holders + (capture == last_ ? 1 : 0)) return;
+    // Read by this loader, and no constant.
+    auto& images = std::const_pointer_cast<Capture>(capture)->images;
+    for (const std::string& role : roles) {
+        if (!pipeline_.writes_role(role)) continue;
+        if (auto image = images.extract(role)) Image::give_memory(std::move(image.mapped()));
+    }
+}
+
+FrameLoader::CapturePointer FrameLoader::get(int file) {
+    request(file);
+    return reads_.at(file).get();
+}
+
+FrameLoader::CapturePointer FrameLoader::held(std::size_t index) const {
+    auto held = std::make_shared<Capture>(*last_);
+    held->header.frame = run_.frames[index];
+    return held;
+}
+
+FrameLoader::CapturePointer FrameLoader::take(std::size_t index, int subframe) {
+    const int frame = run_.frames[index];
+    const int file = files_.number(frame, subframe);
+    const bool holds = is_missing(index) && run_.missing == MissingFrame::hold && last_;
+    const bool last_of_frame = subframe + 1 == subframe_count();
+    if (!holds) {
+        request(file);
+        reads_.at(file).wait();
+    }
+    // What comes next is read while this one is worked on; what no longer matters is let go.
+    std::vector<int> wanted = files_.numbers(frame);
+    if (!last_of_frame) request(files_.number(frame, subframe + 1));
+    else if (index + 1 < run_.frames.size() && !is_missing(index + 1)) {
+        const std::vector<int> next = files_.numbers(run_.frames[index + 1]);
+        request(next.front());
+        wanted.insert(wanted.end(), next.begin(), next.end());
+    }
+    const CapturePointer current = holds ? held(index) : get(file);
+    std::erase_if(reads_, [&](const auto& read) {
+        return std::find(wanted.begin(), wanted.end(), read.first) == wanted.end() ||
+               (subframe_count() > 1 && read.first <= file && read.first >= files_.number(frame, 0));
+    });
+    if (!holds && last_of_frame) last_ = current;
+    return current;
+}
+
+FrameLoader::Neighbours FrameLoader::neighbours(std::size_t index) {
+    const int frame = run_.frames[index];
+    Neighbours neighbours;
+    for (const int offset : pipeline_.neighbour_offsets())
+        if (files_.has_neighbour(frame, offset))
+            neighbours[offset] = get(files_.neighbour_number(frame, offset));
+    return neighbours;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,119 @@
+#include "framework/run/frame_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "framework/capture/capture_window.h"
+#include "framework/base/error.h"
+#include "framework/render/trace.h"
+#include "framework/image/window.h"
+
+namespace aftershade {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+template <typename Read>
+auto timed_read(RunReport& report, const Read& read) {
+    const auto start = Clock::now();
+    auto captures = read();
+    report.read_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return captures;
+}
+
+}  // namespace
+
+Window written_window(const Window& display, const RunOptions& run) {
+    Window full = display;
+    if (run.region)
+        full = {display.min_x + run.region->min_x, display.min_y + run.region->min_y,
+                display.min_x + run.region->max_x, display.min_y + run.region->max_y};
+    return scaled_window(full, display, run.scale_divisor);
+}
+
+void note_non_finite(int frame, RunReport& report) {
+    // A frame's files are reported after the next frame's capture.
+    std::vector<int>& frames = report.frames_non_finite;
+    if (std::ranges::find(frames, frame) == frames.end()) frames.push_back(frame);
+}
+
+FrameInputs FrameRun::inputs_of(std::size_t index) const {
+    FrameInputs inputs;
+    inputs.subframe_count = loader_.subframe_count();
+    inputs.scale = 1.0 / run_.scale_divisor;
+    inputs.fps = sequence_.fps;
+    inputs.begins_shot = loader_.begins_shot(index);
+    return inputs;
+}
+
+void FrameRun::build_ahead(std::size_t index, const std::vector<std::string>& roles) {
+    if (!renderer_.can_build_ahead()) return;
+    const std::optional<Capture> outline = loader_.outline(index);
+    if (!outline) return;
+    FrameInputs inputs = inputs_of(index);
+    inputs.capture = inputs.centre = &*outline;
+    renderer_.build_ahead(inputs, roles);
+}
+
+FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,
+                                    RunReport& report, const RunObserver& observer) {
+    FrameInputs inputs = inputs_of(index);
+    const auto neighbours = timed_read(report, [&] { return loader_.neighbours(index); });
+    for (const auto& [offset, capture] : neighbours) inputs.set(offset, capture.get());
+    std::shared_ptr<const Capture> current, centre;
+    FrameResult result;
+    std::vector<graph::PassTime> times;
+    std::string history_reset;
+    std::vector<std::string> messages;
+    for (int subframe = 0; subframe < inputs.subframe_count; ++subframe) {
+        current = timed_read(report, [&] { return loader_.take(index, subframe); });
+        if (subframe == inputs.subframe_count / 2) centre = current;
+        if (subframe == 0 && observer.frame_started) observer.frame_started(*current);
+        meet_non_finite(*current, report, observer);
+        inputs.capture = current.get();
+        inputs.centre = centre.get();
+        inputs.subframe = subframe;
+        inputs.uploaded = [&] { loader_.give_images(index, current, roles, current == centre ? 2 : 1); };
+        result = renderer_.render(inputs, roles, true);
+        times.insert(times.end(), result.times.begin(), result.times.end());
+        if (subframe == 0) history_reset = result.history_reset;
+        messages.insert(messages.end(), result.messages.begin(), result.messages.end());
+    }
+    result.times = std::move(times);
+    result.messages = std::move(messages);
+    result.history_reset = std::move(history_reset);
+    return finished(std::move(centre), std::move(result));
+}
+/// Before the effects see it, and before any history does.
+void FrameRun::meet_non_finite(const Capture& capture, RunReport& report, const RunObserver& observer) const {
+    if (capture.non_finite.empty()) return;
+    note_non_finite(capture.header.frame, report);
+    const auto sentences = describe_non_finite(run_.on_nan, capture);
+    if (run_.on_nan == NanPolicy::fail) throw Error(ExitCode::capture, sentences.front());
+    if (observer.non_finite) std::ranges::for_each(sentences, observer.non_finite);
+}
+
+/// The frame without the margin of its region.
+FrameRun::Rendered FrameRun::finished(std::shared_ptr<const Capture> capture, FrameResult result) const {
+    if (run_.region) {
+        auto part = std::make_shared<Capture>(*capture);
+        const Window region = written_window(capture->header.display_window, run_);
+        crop_capture(*part, region);
+        for (auto* images : {&result.images, &result.taps})
+            for (auto& [name, image] : *images)
+                if (image.width() == capture->header.data_window.width() &&
+                    image.height() == capture->header.data_window.height())
+                    image = place_in_window(std::move(image), capture->header.data_window,
+                                            part->header.data_window, 0);
+        result.region = region;
+        capture = std::move(part);
+    }
+    const TraceScope scan(run_.trace, "scan", "frame " + std::to_string(capture->header.frame));
+    auto outputs = apply_nan_policy(run_.on_nan, result);
+    return {std::move(capture), std::make_shared<const FrameResult>(std::move(result)), std::move(outputs)};
+}
+
+}  // namespace aftershade

@@ -1,0 +1,53 @@
+// One frame of a run, from its first sub-frame to its results.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/run/frame_loader.h"
+#include "framework/run/nan_policy.h"
+#include "framework/render/renderer.h"
+#include "framework/run/run_report.h"
+
+namespace aftershade {
+
+/// Refers to what its caller keeps. [one thread]
+class FrameRun {
+public:
+    FrameRun(PipelineRenderer& renderer, FrameLoader& loader, const Sequence& sequence, const RunOptions& run)
+        : renderer_(renderer), loader_(loader), sequence_(sequence), run_(run) {}
+
+    struct Rendered {
+        std::shared_ptr<const Capture> capture;
+        std::shared_ptr<const FrameResult> result;
+        std::vector<NonFiniteOutput> non_finite;
+    };
+
+    /// While the frame is read: builds its graph by what its header says, if that is enough. Faults are left
+    /// to render(), which meets them in their order.
+    void build_ahead(std::size_t index, const std::vector<std::string>& roles);
+    /// Reading's faults come as Error(ExitCode::capture), and so do pixels that NanPolicy::fail refuses.
+    Rendered render(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
+                    const RunObserver& observer);
+
+private:
+    FrameInputs inputs_of(std::size_t index) const;
+    void meet_non_finite(const Capture& capture, RunReport& report, const RunObserver& observer) const;
+    Rendered finished(std::shared_ptr<const Capture> capture, FrameResult result) const;
+
+    PipelineRenderer& renderer_;
+    FrameLoader& loader_;
+    const Sequence& sequence_;
+    const RunOptions& run_;
+};
+
+/// What a run writes of a frame whose display window at full scale is `display`: all of it or the region, at
+/// the run's scale.
+Window written_window(const Window& display, const RunOptions& run);
+
+/// Adds a frame with NaN or infinite pixels to the report, once.
+void note_non_finite(int frame, RunReport& report);
+
+}  // namespace aftershade

@@ -1,0 +1,49 @@
+// Which frames a run renders, and which part of each at which size.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "framework/render/trace.h"
+#include "framework/image/image.h"
+#include "framework/render/native_steps.h"
+
+namespace aftershade {
+
+/// What to do where a frame's file is not there.
+enum class MissingFrame {
+    error,  ///< the frame has failed
+    skip,   ///< leave it out
+    hold    ///< run the last frame that was there again, under this frame's number
+};
+
+/// What to do where a capture or an output has pixels that are NaN or infinite. They are always counted.
+enum class NanPolicy {
+    warn,  ///< say so
+    fail,  ///< the frame has failed, and nothing of it is written
+    mend   ///< replace them (framework/image/non_finite.h), in captures before the effects see them, and say
+           ///< so
+};
+
+struct RunOptions {
+    std::vector<int> frames;
+    int warmup_frames = 0;  ///< of these, the first ones are rendered for their history and not written
+    MissingFrame missing = MissingFrame::error;
+    NanPolicy on_nan = NanPolicy::warn;
+    bool stop_on_error = false;  ///< the first frame that fails ends the run
+    bool audit = false;
+    bool fuse_passes = true;
+    int compile_threads = 0;  ///< beside the one that draws, for what a first frame compiles
+    bool telemetry = false;
+    int scale_divisor = 1;                ///< frames are rendered at 1/this of their size
+    std::optional<Window> region;         ///< px of the display window at full scale, from its top left
+    std::optional<int> region_margin_px;  ///< rendered around the region, and not written; nullopt: what it
+                                          ///< needs (framework/look/reach.h)
+    std::filesystem::path history_in;     ///< "" for none
+    std::filesystem::path history_out;    ///< "" for none
+    NativeSources natives{};
+    Trace* trace = nullptr;  ///< gets what the run does and when; nullptr for none
+};
+
+}  // namespace aftershade

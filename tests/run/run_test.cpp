@@ -1,0 +1,121 @@
+// Whole runs: when they give back what they hold on the GPU.
+#include "framework/run/run.h"
+
+#include <gtest/gtest.h>
+
+#include "framework/run/frame_loader.h"
+#include "tests/render/effect_fixture.h"
+
+namespace aftershade::test {
+namespace {
+
+const std::filesystem::path kRoot = AFTERSHADE_SOURCE_DIR;
+
+/// A sequence of three small frames, and a look that has a history.
+class Runs : public testing::Test {
+protected:
+    Runs() {
+        effects_.add(
+            "blend",
+            R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+            "textures": { "kept": { "format": "rgba32f", "history": true, "doc": "." } },
+            "passes": [ { "name": "main", "shader": "main.frag" } ])",
+            "void main() {\n    ivec2 p = ivec2(gl_FragCoord.xy);\n"
+            "    out_kept = out_color = texelFetch(color, p, 0) + texelFetch(kept_prev, p, 0);\n}\n");
+        for (int frame = 1; frame <= 3; ++frame) {
+            const SyntheticScene scene{.width = 16, .height = 9, .background = {float(frame), 0, 0}};
+            write_capture(make_capture(scene, frame), folder_ / ("in_" + std::to_string(frame) + ".exr"));
+        }
+        options_.frames = {1, 2, 3};
+        outputs_.patterns = {(folder_ / "out_#.exr").string()};
+        outputs_.compression = "none";
+    }
+
+    /// How often the run ends its context.
+    int endings() {
+        Diagnostics faults;
+        const auto sequence = open_sequence((folder_ / "in_#.exr").string(), faults);
+        std::vector<Profile> profiles = read_profiles(kRoot / "profiles", faults);
+        EXPECT_FALSE(faults.has_errors());
+        const CaptureReader reader(*sequence, std::move(profiles), {});
+        const Bound bound(effects_, look_of(R"({ "effect": "blend" })"));
+        EXPECT_EQ(bound.faults().find("error"), std::string::npos) << bound.faults();
+        std::optional<gpu::Context> context;
+        int endings = 0;
+        RunSetup setup{
+            [&]() -> gpu::Context& { return context ? *context : context.emplace(gpu::Backend::software); },
+            bound.pipeline(),
+            *sequence,
+            reader,
+            options_,
+            outputs_,
+            kRoot};
+        setup.end_context = [&] {
+            ++endings;
+            context.reset();
+        };
+        const std::atomic<bool> stop = false;
+        report_ = run_frames(setup, {}, stop);
+        return endings;
+    }
+
+    float last_red() const {
+        return ExrFile(folder_ / "out_3.exr").read_floats(0, std::vector<std::string>{"R"}).at(3, 2, 0);
+    }
+
+    TemporaryFolder folder_;
+    EffectFolder effects_;
+    RunOptions options_;
+    OutputOptions outputs_;
+    RunReport report_;
+};
+
+TEST_F(Runs, EndTheContextOnceAfterTheLastFrameAndStillWriteIt) {
+    EXPECT_EQ(endings(), 1);
+    EXPECT_EQ(last_red(), 6) << "1 + 2 + 3";
+    EXPECT_FALSE(report_.history_saved);
+}
+
+TEST_F(Runs, EndItWhereFramesAreMissing) {
+    std::filesystem::remove(folder_ / "in_3.exr");
+    EXPECT_EQ(endings(), 1);
+    EXPECT_EQ(report_.failures.size(), 1U);
+}
+
+TEST_F(Runs, KeepItForTheHistoryThatTheySave) {
+    options_.history_out = folder_ / "history";
+    EXPECT_EQ(endings(), 0);
+    EXPECT_TRUE(report_.history_saved);
+    EXPECT_EQ(last_red(), 6);
+}
+
+TEST_F(Runs, FailWhereTheLastOutputCannotBeWrittenThoughTheContextHasEnded) {
+    std::filesystem::create_directories(folder_ / "out_3.exr");
+    EXPECT_THROW(endings(), Error);
+}
+
+TEST_F(Runs, GiveTheMemoryOfAFrameToItsResultOnceNobodyElseHoldsIt) {
+    Diagnostics faults;
+    const auto sequence = open_sequence((folder_ / "in_#.exr").string(), faults);
+    const CaptureReader reader(*sequence, read_profiles(kRoot / "profiles", faults), {});
+    const Bound bound(effects_, look_of(R"({ "effect": "blend" })"));
+    FrameLoader loader(*sequence, reader, bound.pipeline(), options_, {"color", "depth"});
+    const auto has_color = [](const FrameLoader::CapturePointer& capture) {
+        return capture->images.contains("color");
+    };
+    const auto first = loader.take(0, 0);
+    loader.give_images(0, first, {"depth"}, 1);
+    EXPECT_TRUE(has_color(first)) << "its result has no colour";
+    {
+        const auto other = first;
+        loader.give_images(0, first, {"color"}, 1);
+        EXPECT_TRUE(has_color(first)) << "somebody else may read it";
+    }
+    loader.give_images(0, first, {"color", "depth"}, 1);
+    EXPECT_FALSE(has_color(first));
+    EXPECT_TRUE(first->images.contains("depth")) << "no step writes depth";
+    EXPECT_TRUE(has_color(loader.take(1, 0)));
+}
+
+}  // namespace
+}  // namespace aftershade::test
