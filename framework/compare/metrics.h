@@ -26,7 +26,7 @@ struct ImageMetrics {
 /// only with `nan_equal`; otherwise they make every figure infinite, and PSNR minus infinity.
 ImageMetrics compare_images(const Image& reference, const Image& test, int channels, bool nan_equal = false);
 
-/// The PSNR of docs/design.md, Measures: both images clamped to [0, 1], encoded by the piecewise sRGB curve
+/// The PSNR of docs/measures.md: both images clamped to [0, 1], encoded by the piecewise sRGB curve
 /// in double precision without an 8-bit step, mean squared error over all pixels and R, G, B, peak 1.
 double display_psnr_db(const Image& reference, const Image& test);
 

@@ -23,7 +23,7 @@ Capture read_truth(const Sequence& sequence, int frame, const std::string& name,
 /// |test - truth| by channel, opaque. Both images have one size.
 Image absolute_difference(const Image& truth, const Image& test);
 
-/// {"truth", "psnr_db", "flip"}: as docs/design.md, Measures, has PSNR, and the mean of LDR-FLIP. Both images
+/// {"truth", "psnr_db", "flip"}: as docs/measures.md, has PSNR, and the mean of LDR-FLIP. Both images
 /// have one size.
 nlohmann::ordered_json metrics_json(const std::string& name, const Image& truth, const Image& color);
 

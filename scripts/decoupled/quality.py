@@ -37,7 +37,7 @@ def through(steps, capture, frames=FRAME):
 
 
 def changed_pixels(sharp, truth):
-    """docs/design.md, Measures: where the mean over the 18 x 18 window x-8..x+9 of the mean difference as sRGB is above 0.02."""
+    """docs/measures.md: where the mean over the 18 x 18 window x-8..x+9 of the mean difference as sRGB is above 0.02."""
     difference = numpy.abs(srgb(truth) - srgb(sharp)).mean(axis=-1)
     sums = numpy.pad(numpy.pad(difference, ((8, 9), (8, 9)), mode="edge").cumsum(0).cumsum(1), ((1, 0), (1, 0)))
     return (sums[18:, 18:] - sums[:-18, 18:] - sums[18:, :-18] + sums[:-18, :-18]) / 18**2 > 0.02

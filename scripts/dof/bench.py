@@ -18,7 +18,7 @@ REPETITIONS = int(os.environ.get("REPETITIONS", "5"))
 RADII = [2, 4, 8, 16, 32, 64]
 FRACTIONS = [0, 0.1, 0.25, 0.5, 0.75, 1]
 FOCUS_M, FOCAL_MM, SENSOR_MM = 2, 200, 36
-ENOUGH_IOU = 0.97  # docs/design.md, Measures
+ENOUGH_IOU = 0.97  # docs/measures.md
 SLOW_MS = 8000  # of one frame: such an effect is timed once, far at R = 16 and no more
 
 

@@ -1,5 +1,5 @@
 """What scripts/quality-dof, scripts/bench-dof and tests/bench/dof-against-blender share: the effects of the depth-of-field
-family that this tree has, EXR in and out, and the measures of docs/design.md in numpy, independent of the C++ ones."""
+family that this tree has, EXR in and out, and the measures of docs/measures.md in numpy, independent of the C++ ones."""
 import json
 import os
 import pathlib
@@ -86,7 +86,7 @@ def srgb(linear):
 
 
 def psnr_db(truth, picture, where=None):
-    """docs/design.md, Measures: clamped, piecewise sRGB, no 8-bit step, mean over all pixels (or `where`) and R, G, B."""
+    """docs/measures.md: clamped, piecewise sRGB, no 8-bit step, mean over all pixels (or `where`) and R, G, B."""
     error = (srgb(truth) - srgb(picture)) ** 2
     mse = error.mean() if where is None else error[where].mean() if where.any() else float("nan")
     return float("inf") if mse == 0 else float(-10 * numpy.log10(mse))

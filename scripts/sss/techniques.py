@@ -52,7 +52,7 @@ def scale_of(unscattered, where):
 
 
 def psnr_db(truth, picture, where, scale):
-    """docs/design.md, Measures: of luminance over the scattering pixels alone; both clamped to 0..1 after the scale."""
+    """docs/measures.md: of luminance over the scattering pixels alone; both clamped to 0..1 after the scale."""
     error = (numpy.clip(truth[where] * scale, 0, 1) - numpy.clip(picture[where] * scale, 0, 1)) @ LUMINANCE
     mse = float((error**2).mean())
     return float("inf") if mse == 0 else -10 * numpy.log10(mse)
