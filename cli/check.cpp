@@ -17,10 +17,11 @@
 #include "framework/base/status.h"
 #include "framework/base/text.h"
 #include "framework/effect/lint.h"
+#include "framework/effect/manifest/manifest_reader.h"
 #include "framework/effect/usage_check.h"
-#include "framework/run/effect_check.h"
 #include "framework/look/look.h"
 #include "framework/look/pipeline.h"
+#include "framework/run/effect_check.h"
 
 namespace aftershade::cli {
 

@@ -13,12 +13,13 @@
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
 #include "cli/visibility_options.h"
-#include "framework/capture/deep_layers.h"
-#include "framework/capture/frame_range.h"
 #include "framework/base/cores.h"
 #include "framework/base/input_files.h"
 #include "framework/base/text.h"
+#include "framework/capture/deep_layers.h"
+#include "framework/capture/frame_range.h"
 #include "framework/scene/job.h"
+#include "framework/scene/scene_reader.h"
 
 namespace aftershade::cli {
 

@@ -17,11 +17,11 @@
 #include "cli/run_workers.h"
 #include "cli/submit_options.h"
 #include "cli/verbs.h"
-#include "framework/batch/farm_job.h"
-#include "framework/capture/frame_range.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
+#include "framework/batch/farm_files.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade::cli {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <filesystem>
 
-#include "framework/batch/farm_job.h"
+#include "framework/batch/farm_files.h"
 
 namespace aftershade::cli {
 

@@ -98,7 +98,7 @@ std::string unit_of(const std::string& path) {
 
 /// The units that each unit of a module includes.
 std::map<std::string, std::set<std::string>> units_included(const std::string& module) {
-    const std::regex include(R"re(^\s*#include "(framework/\w+/\w+\.h)".*)re");
+    const std::regex include(R"re(^\s*#include "(framework/[\w/]+\.h)".*)re");
     std::map<std::string, std::set<std::string>> included;
     for (const Line& line : code_lines(kRoot / "framework" / module, {".h", ".cpp"})) {
         std::smatch match;
@@ -132,9 +132,8 @@ std::string circle_from(const std::string& start,
 }
 
 TEST(Architecture, NoTwoUnitsOfAModuleNeedEachOther) {
-    for (const char* module : {"core", "image", "file", "capture", "inspect", "pipeline"}) {
+    for (const auto& [module, allowed] : kAllowed) {
         const auto included = units_included(module);
-        EXPECT_FALSE(included.empty()) << module;
         for (const auto& [unit, others] : included) EXPECT_EQ(circle_from(unit, included), "");
     }
 }

@@ -1,8 +1,9 @@
-// What the writers of job files share.
+// The files of farms: what their writers share, and the choice among them.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/batch/farm_job.h"
@@ -20,5 +21,12 @@ void add_openjd_files(const FarmJob& job, FarmFiles& out);
 void add_kubernetes_files(const FarmJob& job, FarmFiles& out);
 void add_opencue_files(const FarmJob& job, FarmFiles& out);
 void add_parallel_files(const FarmJob& job, FarmFiles& out);
+
+/// "slurm", "openjd", "kubernetes", "opencue", "parallel"
+const std::vector<std::string>& farm_names();
+
+/// The files of one farm, with task.sh and merge.sh, which all of them start. Throws Error(usage) where the
+/// farm cannot take the job, such as more tasks in a row than it has steps.
+FarmFiles farm_files(std::string_view farm, const FarmJob& job);
 
 }  // namespace aftershade

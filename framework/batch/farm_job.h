@@ -60,13 +60,6 @@ struct FarmFiles {
     std::vector<std::string> remarks;  ///< what the farm cannot do or needs, a sentence each
 };
 
-/// "slurm", "openjd", "kubernetes", "opencue", "parallel"
-const std::vector<std::string>& farm_names();
-
-/// The files of one farm, with task.sh and merge.sh, which all of them start. Throws Error(usage) where the
-/// farm cannot take the job, such as more tasks in a row than it has steps.
-FarmFiles farm_files(std::string_view farm, const FarmJob& job);
-
 /// The number as names of reports and histories have it: "0012".
 std::string task_name(int task);
 

@@ -3,8 +3,8 @@
 
 #include <sys/types.h>
 
-#include "framework/batch/worker.h"
 #include "framework/base/child_process.h"
+#include "framework/batch/worker_command.h"
 
 namespace aftershade {
 

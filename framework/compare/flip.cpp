@@ -8,15 +8,14 @@
 #include <numbers>
 #include <span>
 
+#include "framework/base/parallel.h"
 #include "framework/compare/flip_band.h"
 #include "framework/compare/row_filter.h"
-#include "framework/base/parallel.h"
 
 namespace aftershade {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kToneMapperNames = {"aces", "reinhard", "hable"};
 using rows::kBandHeight_px;
 
 struct Root {
@@ -97,20 +96,6 @@ FlipResult evaluate(const Image& reference, const Image& test, std::span<const F
 }
 
 }  // namespace
-
-std::string_view tone_mapper_name(ToneMapper mapper) {
-    return kToneMapperNames[std::size_t(mapper)];
-}
-
-std::optional<ToneMapper> find_tone_mapper(std::string_view name) {
-    const auto found = std::ranges::find(kToneMapperNames, name);
-    if (found == kToneMapperNames.end()) return std::nullopt;
-    return ToneMapper(found - kToneMapperNames.begin());
-}
-
-std::vector<std::string> tone_mapper_names() {
-    return {kToneMapperNames.begin(), kToneMapperNames.end()};
-}
 
 double pixels_per_degree(double distance_m, double width_px, double width_m) {
     return distance_m * (width_px / width_m) * (std::numbers::pi / 180);

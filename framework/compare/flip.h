@@ -11,14 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/compare/tone_mapper.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
-
-enum class ToneMapper { aces, reinhard, hable };
-std::string_view tone_mapper_name(ToneMapper mapper);
-std::optional<ToneMapper> find_tone_mapper(std::string_view name);
-std::vector<std::string> tone_mapper_names();
 
 /// Pixels per degree of visual angle of a display `width_px` wide and `width_m` broad, seen from
 /// `distance_m`.

@@ -73,13 +73,6 @@ bool same_not_finite(float reference, float test) {
 
 }  // namespace
 
-const std::array<float, 6>& tone_mapper_coefficients(ToneMapper mapper) {
-    static constexpr std::array<float, 6> aces = {0.6f * 0.6f * 2.51f, 0.6f * 0.03f, 0,
-                                                  0.6f * 0.6f * 2.43f, 0.6f * 0.59f, 0.14f};
-    static constexpr std::array<float, 6> hable = {0.231683f, 0.013791f, 0, 0.18f, 0.3f, 0.018f};
-    return mapper == ToneMapper::hable ? hable : aces;
-}
-
 FlipFilters::FlipFilters(float pixels_per_degree) {
     const float widest = std::max(kCsfCz1.b, kCsfCz2.b);
     color_radius = int(std::ceil(3 * std::sqrt(widest / (2 * kPi * kPi)) * pixels_per_degree));

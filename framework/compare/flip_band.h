@@ -5,15 +5,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "framework/compare/flip.h"
 #include "framework/compare/row_filter.h"
+#include "framework/compare/tone_mapper.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
-
-/// a0 to a5 of (x (x a0 + a1) + a2) / (x (x a3 + a4) + a5): ACES (Narkowicz's fit, its exposure of 0.6 taken
-/// out) and Hable. Reinhard divides by luminance and has none.
-const std::array<float, 6>& tone_mapper_coefficients(ToneMapper mapper);
 
 /// What is done to linear light before LDR-FLIP.
 struct FlipExposure {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "framework/compare/difference_rules.h"
 #include "framework/compare/pixel_areas.h"
-#include "framework/compare/pixel_differences.h"
 #include "framework/compare/pixel_pair.h"
 
 namespace aftershade {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "framework/compare/pixel_differences.h"
+#include "framework/compare/difference_rules.h"
 
 namespace aftershade {
 

@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/effect/shader_source.h"
+#include "framework/base/diagnostics.h"
+#include "framework/effect/source_lines.h"
 
 namespace aftershade {
 

@@ -1,8 +1,8 @@
 // Fetches of single texels as loads from images.
 //
 // llvmpipe calls a function for each texelFetch, and has a load from an image in line: a half to a third
-// of the time (docs/llvmpipe.md). On GPUs the two differ little, and a sampler's path has the better caches, so
-// authors write texelFetch and the host rewrites it where that pays.
+// of the time (docs/llvmpipe.md). On GPUs the two differ little, and a sampler's path has the better caches,
+// so authors write texelFetch and the host rewrites it where that pays.
 #pragma once
 
 #include <map>

@@ -24,6 +24,7 @@
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/param_reader.h"
 #include "framework/effect/param_resources.h"
+#include "framework/effect/source_lines.h"
 
 namespace aftershade {
 
@@ -117,27 +118,6 @@ std::filesystem::path shader_path(const PassSpec& pass, ShaderFile file,
 
 /// Of a texel as GLSL declares it: float, uint, vec2, uvec4.
 std::string texel_type(gpu::TextureFormat format);
-
-/// A name that many lines share: a shader with its includes has thousands. [safe to copy between threads]
-class FileName {
-public:
-    FileName(std::string name) : name_(std::make_shared<const std::string>(std::move(name))) {}
-    FileName(const char* name) : FileName(std::string(name)) {}
-    const std::string& text() const { return *name_; }
-
-private:
-    std::shared_ptr<const std::string> name_;
-};
-
-struct SourceLine {
-    FileName file;  ///< "<generated>" for the host's own lines
-    int line = 0;
-};
-
-struct ShaderSource {
-    std::string text;
-    std::vector<SourceLine> lines;  ///< of text, from its first
-};
 
 /// Bounds of a shader with its includes. A driver's compiler does not give up by itself: Mesa 22.3.6 runs out
 /// of stack on an expression of 20,000 terms, and takes minutes for large arrays.

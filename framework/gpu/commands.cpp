@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "framework/base/error.h"
-#include "framework/gpu/context_impl.h"
+#include "framework/gpu/context_internal.h"
 #include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
@@ -116,7 +117,7 @@ private:
             // With one level there is nothing that a view would hide.
             const GLuint handle = sampled.texture->desc().mips == 1 || sampled.level < 0
                                       ? sampled.texture->handle()
-                                      : impl_.cache->level_view(*sampled.texture, sampled.level);
+                                      : impl_.cache->level_view(sampled.texture->cached(), sampled.level);
             gl_.BindTextureUnit(unit(sampled.binding), handle);
             gl_.BindSampler(unit(sampled.binding),
                             impl_.cache->sampler(sampled.filter, sampled.wrap, !one_level));
@@ -203,8 +204,11 @@ void check_targets(const Limits& limits, const Program& program, std::span<const
 }
 
 GLuint framebuffer(Context& context, const Program& program, std::span<const Target> targets) {
+    std::vector<Attachment> attachments;
+    for (const Target& target : targets)
+        attachments.push_back({target.texture->cached(), target.level, target.layer});
     try {
-        return context.impl().cache->framebuffer(targets);
+        return context.impl().cache->framebuffer(attachments);
     } catch (const Error& error) {
         context.check(fmt::format("{}: {}", program.label(), error.what()));
         fail(program, error.what());

@@ -5,14 +5,12 @@
 #include <string_view>
 
 #include "framework/gpu/buffer.h"
+#include "framework/gpu/object_cache.h"
 #include "framework/gpu/program.h"
 #include "framework/gpu/texture.h"
 
 namespace aftershade::gpu {
 
-enum class Filter { nearest, linear };
-/// What a fetch outside the texture gives: the nearest texel, or zero.
-enum class Wrap { clamp, zero };
 enum class Access { read, write, read_write };
 enum class Blend { none, add, min, max };
 /// Of an instance: four vertices of a triangle strip, or one point.

@@ -3,24 +3,15 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "framework/gpu/backend.h"
+
 struct GladGLContext;
 
 namespace aftershade::gpu {
-
-/// Which library and which kind of renderer. `automatic` tries egl, egl_software and osmesa in this order,
-/// and `software` the last two, which draw the same bits.
-enum class Backend { automatic, egl, egl_software, osmesa, software };
-
-/// "auto", "egl", "software", "egl-software", "osmesa"; nullopt for anything else.
-std::optional<Backend> parse_backend(std::string_view name);
-std::string_view backend_name(Backend backend);
-/// What parse_backend() takes, for messages: "auto, egl, software, egl-software, osmesa".
-std::string backend_names();
 
 struct ContextInfo {
     Backend backend = Backend::automatic;  ///< never `automatic` or `software` in a made context
@@ -43,12 +34,6 @@ struct BackendReport {
 
 /// Tries egl, egl_software and osmesa in turn, each with the self-test, and leaves no context current.
 std::vector<BackendReport> probe_backends();
-
-/// An EGLDisplay and an EGLContext of desktop OpenGL.
-struct SharedEglContext {
-    void* display = nullptr;
-    void* context = nullptr;
-};
 
 /// A context whose renderer another one is to have.
 struct SiblingOf {
@@ -116,7 +101,7 @@ public:
     /// The function table; for framework/gpu only, which alone includes <glad/gl.h>.
     const GladGLContext& gl() const;
 
-    struct Impl;                           ///< framework/gpu/context_impl.h
+    struct Impl;                           ///< framework/gpu/context_internal.h
     Impl& impl() const { return *impl_; }  ///< for framework/gpu
 
 private:

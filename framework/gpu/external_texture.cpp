@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/base/error.h"
-#include "framework/gpu/context_impl.h"
+#include "framework/gpu/context_internal.h"
 
 namespace aftershade::gpu {
 namespace {

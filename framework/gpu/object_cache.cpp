@@ -55,35 +55,32 @@ unsigned int ObjectCache::sampler(Filter filter, Wrap wrap, bool mips) {
     return samplers_[index];
 }
 
-unsigned int ObjectCache::level_view(const Texture& texture, int level) {
-    unsigned int& view = views_[{texture.handle(), level}];
+unsigned int ObjectCache::level_view(const CachedTexture& texture, int level) {
+    unsigned int& view = views_[{texture.handle, level}];
     if (view != 0) return view;
-    const TextureDesc& desc = texture.desc();
     // A view must be made of a name that was never bound, which CreateTextures does not give.
     gl_.GenTextures(1, &view);
-    gl_.TextureView(view, desc.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, texture.handle(),
-                    gl_format(desc.format).internal, static_cast<GLuint>(level), 1, 0,
-                    static_cast<GLuint>(desc.layers));
+    gl_.TextureView(view, texture.layers > 1 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, texture.handle,
+                    gl_format(texture.format).internal, static_cast<GLuint>(level), 1, 0,
+                    static_cast<GLuint>(texture.layers));
     return view;
 }
 
-unsigned int ObjectCache::framebuffer(std::span<const Target> targets) {
-    key_.clear();
-    for (const Target& target : targets) {
-        key_.push_back({target.texture->handle(), target.level, target.layer});
-    }
+unsigned int ObjectCache::framebuffer(std::span<const Attachment> attachments) {
+    key_.assign(attachments.begin(), attachments.end());
     if (const auto found = framebuffers_.find(key_); found != framebuffers_.end()) return found->second;
 
     GLuint framebuffer = 0;
     gl_.CreateFramebuffers(1, &framebuffer);
     std::vector<GLenum> buffers;
-    for (const Target& target : targets) {
+    for (const Attachment& attachment : attachments) {
         buffers.push_back(static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + buffers.size()));
-        const GLuint handle = target.texture->handle();
-        if (target.texture->desc().layers > 1) {
-            gl_.NamedFramebufferTextureLayer(framebuffer, buffers.back(), handle, target.level, target.layer);
+        const GLuint handle = attachment.texture.handle;
+        if (attachment.texture.layers > 1) {
+            gl_.NamedFramebufferTextureLayer(framebuffer, buffers.back(), handle, attachment.level,
+                                             attachment.layer);
         } else {
-            gl_.NamedFramebufferTexture(framebuffer, buffers.back(), handle, target.level);
+            gl_.NamedFramebufferTexture(framebuffer, buffers.back(), handle, attachment.level);
         }
     }
     gl_.NamedFramebufferDrawBuffers(framebuffer, static_cast<GLsizei>(buffers.size()), buffers.data());
@@ -100,7 +97,7 @@ unsigned int ObjectCache::framebuffer(std::span<const Target> targets) {
 void ObjectCache::forget_texture(unsigned int handle) {
     std::erase_if(framebuffers_, [&](const auto& entry) {
         const auto& targets = entry.first;
-        const auto is_it = [&](const Attachment& a) { return a.texture == handle; };
+        const auto is_it = [&](const Attachment& a) { return a.texture.handle == handle; };
         if (std::none_of(targets.begin(), targets.end(), is_it)) return false;
         gl_.DeleteFramebuffers(1, &entry.second);
         return true;

@@ -9,11 +9,30 @@
 #include <utility>
 #include <vector>
 
-#include "framework/gpu/commands.h"
+#include "framework/gpu/texture_format.h"
 
 struct GladGLContext;
 
 namespace aftershade::gpu {
+
+enum class Filter { nearest, linear };
+/// What a fetch outside the texture gives: the nearest texel, or zero.
+enum class Wrap { clamp, zero };
+/// A texture as far as what is made from it needs.
+struct CachedTexture {
+    unsigned int handle = 0;
+    TextureFormat format = TextureFormat::rgba32f;
+    int layers = 1;
+    auto operator<=>(const CachedTexture&) const = default;
+};
+
+/// One level and layer of a texture that is drawn to.
+struct Attachment {
+    CachedTexture texture;
+    int level = 0;
+    int layer = 0;
+    auto operator<=>(const Attachment&) const = default;
+};
 
 /// [the context's thread, with the context current]
 class ObjectCache {
@@ -25,23 +44,16 @@ public:
 
     unsigned int sampler(Filter filter, Wrap wrap, bool mips);
     /// A texture whose only level is `level` of `texture`, in the same memory.
-    unsigned int level_view(const Texture& texture, int level);
-    /// The framebuffer with these targets as attachments. Throws Error(ExitCode::effect) with GL's status
+    unsigned int level_view(const CachedTexture& texture, int level);
+    /// The framebuffer with these attachments. Throws Error(ExitCode::effect) with GL's status
     /// where it is incomplete.
-    unsigned int framebuffer(std::span<const Target> targets);
+    unsigned int framebuffer(std::span<const Attachment> attachments);
     /// Drops what refers to a texture that is about to die; GL may give its name to another.
     void forget_texture(unsigned int handle);
     std::size_t framebuffer_count() const { return framebuffers_.size(); }
     std::size_t view_count() const { return views_.size(); }
 
 private:
-    struct Attachment {
-        unsigned int texture = 0;
-        int level = 0;
-        int layer = 0;
-        auto operator<=>(const Attachment&) const = default;
-    };
-
     const GladGLContext& gl_;
     std::array<unsigned int, 8> samplers_{};
     std::map<std::pair<unsigned int, int>, unsigned int> views_;  // by texture and level

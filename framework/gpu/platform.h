@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
-#include "framework/gpu/context.h"
+#include "framework/gpu/backend.h"
 
 namespace aftershade::gpu {
 

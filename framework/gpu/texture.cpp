@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "framework/base/error.h"
-#include "framework/gpu/context_impl.h"
+#include "framework/gpu/context_internal.h"
 #include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
@@ -190,6 +190,22 @@ std::vector<Value> read_values(Context& context, const Texture& texture, int lev
 
 }  // namespace
 
+bool may_share_memory(const TextureDesc& a, const TextureDesc& b) {
+    TextureDesc as_b = a;
+    as_b.format = b.format;
+    return as_b == b && bytes_per_texel(a.format) == bytes_per_texel(b.format);
+}
+
+std::uint64_t byte_size(const TextureDesc& desc) {
+    std::uint64_t texels = 0;
+    for (int level = 0; level < desc.mips; ++level) {
+        texels += static_cast<std::uint64_t>(std::max(1, desc.width >> level)) *
+                  static_cast<std::uint64_t>(std::max(1, desc.height >> level));
+    }
+    return texels * static_cast<std::uint64_t>(desc.layers) *
+           static_cast<std::uint64_t>(bytes_per_texel(desc.format));
+}
+
 template <>
 void Handle<ObjectKind::texture>::remove(Context& context, unsigned int name) noexcept {
     if (!context.impl().try_make_current()) return;
@@ -309,7 +325,7 @@ void Texture::clear_to(const std::array<double, 4>& value, int level, int layer)
     if (!draws) impl.wait_for_draws();
     for (int i = first; i <= last; ++i) {
         if (draws) {
-            const Target target{.texture = this, .level = i};
+            const Attachment target{.texture = cached(), .level = i};
             clear_drawn(gl, impl.cache->framebuffer({&target, 1}), desc_, texel);
             continue;
         }

@@ -4,42 +4,16 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "framework/gpu/context.h"
 #include "framework/gpu/handle.h"
+#include "framework/gpu/object_cache.h"
+#include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
-
-enum class TextureFormat {
-    r8,
-    rg8,
-    rgba8,  // unsigned normalised
-    r16f,
-    rg16f,
-    rgba16f,  // half
-    r32f,
-    rg32f,
-    rgba32f,  // float
-    r32ui,
-    rg32ui,
-    rgba32ui,
-    r32i  // integer
-};
-
-/// "rgba16f" and so on, as manifests spell them. Three-channel formats do not exist: llvmpipe refuses half
-/// ones.
-std::optional<TextureFormat> parse_texture_format(std::string_view name);
-std::string_view texture_format_name(TextureFormat format);
-std::vector<std::string_view> texture_format_names();
-int channel_count(TextureFormat format);
-int bytes_per_texel(TextureFormat format);
-bool is_integer(TextureFormat format);  ///< sampled through usampler2D or isampler2D
-bool is_signed_integer(TextureFormat format);
 
 struct TextureDesc {
     int width = 0;
@@ -94,7 +68,8 @@ public:
     /// Fills levels 1.. from level 0 with GL's own box filter.
     void generate_mips();
 
-    unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
+    unsigned int handle() const { return handle_.name(); }                           ///< for framework/gpu
+    CachedTexture cached() const { return {handle(), desc_.format, desc_.layers}; }  ///< for framework/gpu
 
 private:
     friend class TexturesAhead;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "framework/base/memory_limit.h"
-#include "framework/gpu/context_impl.h"
+#include "framework/gpu/context_internal.h"
 
 namespace aftershade::gpu {
 namespace {

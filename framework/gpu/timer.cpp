@@ -1,6 +1,6 @@
 #include "framework/gpu/timer.h"
 
-#include "framework/gpu/context_impl.h"
+#include "framework/gpu/context_internal.h"
 
 namespace aftershade::gpu {
 

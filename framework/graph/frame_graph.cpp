@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/graph/pass_check.h"
+#include "framework/graph/frame_graph_internal.h"
 
 namespace aftershade::graph {
 

@@ -1,4 +1,4 @@
-#include "framework/graph/pass_check.h"
+#include "framework/graph/frame_graph_internal.h"
 
 #include <algorithm>
 #include <string_view>

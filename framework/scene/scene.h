@@ -131,8 +131,4 @@ struct Scene {
     bool has_transparency() const;
 };
 
-/// Reads and checks scene.json and the meshes that it names, relative to its folder. nullopt after errors.
-std::optional<Scene> read_scene(const std::filesystem::path& path, Diagnostics& diagnostics);
-std::optional<Scene> parse_scene(const Node& node, Diagnostics& diagnostics);
-
 }  // namespace aftershade::scene

@@ -2,7 +2,7 @@
 
 #include "framework/base/error.h"
 #include "framework/document/units.h"
-#include "framework/scene/scene_reader.h"
+#include "framework/scene/scene_reader_internal.h"
 
 namespace aftershade::scene {
 

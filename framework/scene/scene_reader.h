@@ -1,45 +1,17 @@
-// Takes a scene document apart; for the sources of this folder.
+// Reads scene.json.
 #pragma once
 
-#include <map>
+#include <filesystem>
 #include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "framework/scene/fields.h"
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
 #include "framework/scene/scene.h"
 
 namespace aftershade::scene {
 
-class SceneReader {
-public:
-    SceneReader(Scene& scene, Diagnostics& diagnostics) : scene_(scene), diagnostics_(diagnostics) {}
-
-    void read(const Node& node);
-
-private:
-    void read_frames(const grammar::Reader& reader);
-    void read_camera(const grammar::Reader& reader);
-    void read_shutter(const grammar::Reader& reader);
-    void read_material(const std::string& name, const grammar::Reader& reader);
-    void read_mesh(const std::string& name, const grammar::Reader& reader);
-    std::optional<Mesh> read_height_field(const grammar::Reader& reader);
-
-    void read_object(const grammar::Reader& reader);
-    Shape read_shape(const grammar::Reader& reader);
-    void add_repeated(const Object& object, const grammar::Reader& reader, const std::string& label);
-    void read_light(const grammar::Reader& reader);
-
-    /// The index of the name that the key gives, or nullopt and an error that lists the known names.
-    std::optional<int> find_name(const grammar::Reader& reader, const std::string& key,
-                                 const std::string& what, const std::map<std::string, int>& names);
-
-    Scene& scene_;
-    Diagnostics& diagnostics_;
-    std::map<std::string, int> materials_;
-    std::map<std::string, int> meshes_;
-    std::map<std::string, int> objects_;
-};
+/// Reads and checks scene.json and the meshes that it names, relative to its folder. nullopt after errors.
+std::optional<Scene> read_scene(const std::filesystem::path& path, Diagnostics& diagnostics);
+std::optional<Scene> parse_scene(const Node& node, Diagnostics& diagnostics);
 
 }  // namespace aftershade::scene

@@ -36,19 +36,6 @@ Place place_of_step(const Look& look, const std::string& step) {
 
 }  // namespace
 
-std::shared_ptr<BoundText> bind_text(const std::string& text, const std::filesystem::path& path,
-                                     const std::shared_ptr<EffectRegistry>& effects, Diagnostics& faults) {
-    const auto node = parse_document(text, path.string(), faults);
-    auto look = node ? parse_look(*node, faults) : std::nullopt;
-    if (!look) return nullptr;
-    auto bound = std::make_shared<BoundText>();
-    bound->text = text;
-    bound->effects = effects;
-    bound->look = std::move(*look);
-    bound->pipeline = bind_pipeline(bound->look, *effects, {}, faults);
-    return bound;
-}
-
 LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
                      std::vector<std::filesystem::path> folders)
     : path_(std::move(path)),

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/error.h"
-#include "framework/serve/look_model.h"
+#include "framework/serve/bound_text.h"
 
 namespace aftershade::serve {
 

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "framework/base/error.h"
-#include "framework/gpu/context_impl.h"
+#include "framework/gpu/context_internal.h"
 #include "framework/gpu/platform.h"
 #include "tests/gpu/gpu_test.h"
 

@@ -9,6 +9,7 @@
 
 #include "framework/scene/renderer.h"
 #include "framework/scene/scatter_points.h"
+#include "framework/scene/scene_reader.h"
 #include "tests/reference/burley.h"
 #include "tests/scene/scene_text.h"
 #include "tests/temporary_folder.h"

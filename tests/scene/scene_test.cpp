@@ -1,4 +1,4 @@
-#include "framework/scene/scene.h"
+#include "framework/scene/scene_reader.h"
 
 #include <gtest/gtest.h>
 

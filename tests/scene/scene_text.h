@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/scene/scene.h"
+#include "framework/scene/scene_reader.h"
 
 namespace aftershade::scene {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/effect/native/native_effect.h"
+#include "framework/effect/native/native_types.h"
 #include "framework/plugin/aftershade_plugin.h"
 
 namespace aftershade {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "framework/base/error.h"
-#include "framework/effect/native/native_effect.h"
+#include "framework/effect/native/native_types.h"
 #include "framework/plugin/aftershade_plugin.h"
 
 namespace aftershade {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "framework/effect/native/confinement.h"
 #include "framework/base/status.h"
-#include "framework/effect/native/native_effect.h"
+#include "framework/effect/native/confinement.h"
+#include "framework/effect/native/native_types.h"
 
 namespace aftershade {
 

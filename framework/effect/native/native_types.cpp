@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "framework/effect/native/native_effect.h"
+#include "framework/effect/native/native_types.h"
 #include "framework/plugin/aftershade_plugin.h"
 
 namespace aftershade {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/effect/native/native_effect.h"
+#include "framework/effect/native/native_types.h"
 
 namespace aftershade {
 

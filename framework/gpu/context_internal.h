@@ -37,6 +37,8 @@ struct Context::Impl {
     /// For destructors: false where make_current() throws, and after Context::abandon().
     bool try_make_current() noexcept;
     void release() noexcept;
+    /// Leaves this thread without the context that is current in it, if one is.
+    static void release_current() noexcept;
     /// Call before GL touches a texture's or a buffer's memory from the CPU (read, write, clear): llvmpipe
     /// (Mesa 22.3.6) gives back a target as it was before a draw still in flight, where another target was
     /// drawn to since.

@@ -1,0 +1,25 @@
+// Reads an effect.json.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "framework/base/diagnostics.h"
+#include "framework/document/document.h"
+#include "framework/effect/manifest/manifest.h"
+
+namespace aftershade {
+
+/// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only
+/// what an earlier one may have written, that every output and texture is written, that shader files exist.
+/// Every fault is reported; nullopt if there was one. What the shaders' text must agree with is
+/// check_declared_used's (usage_check.h). What is declared once is written out: the passes have the
+/// conditions of their groups and textures, tile lists have their buffers and passes, and a pass that leaves
+/// out `reads` or `writes` has those that its shaders' text names.
+/// Modules and shared shaders are read from `glsl_folder`, empty for the shipped one; only then may this
+/// throw, as data_path().
+std::optional<EffectManifest> parse_manifest(const Node& node, const std::filesystem::path& folder,
+                                             Diagnostics& diagnostics,
+                                             const std::filesystem::path& glsl_folder = {});
+
+}  // namespace aftershade

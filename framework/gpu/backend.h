@@ -1,0 +1,26 @@
+// The ways to GL.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace aftershade::gpu {
+
+/// Which library and which kind of renderer. `automatic` tries egl, egl_software and osmesa in this order,
+/// and `software` the last two, which draw the same bits.
+enum class Backend { automatic, egl, egl_software, osmesa, software };
+
+/// "auto", "egl", "software", "egl-software", "osmesa"; nullopt for anything else.
+std::optional<Backend> parse_backend(std::string_view name);
+std::string_view backend_name(Backend backend);
+/// What parse_backend() takes, for messages: "auto, egl, software, egl-software, osmesa".
+std::string backend_names();
+
+/// An EGLDisplay and an EGLContext of desktop OpenGL.
+struct SharedEglContext {
+    void* display = nullptr;
+    void* context = nullptr;
+};
+
+}  // namespace aftershade::gpu

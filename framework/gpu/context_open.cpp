@@ -1,0 +1,166 @@
+// Which backend a context gets, and whether it works.
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
+#include "framework/base/text.h"
+#include "framework/gpu/context_internal.h"
+#include "framework/gpu/fork_guard.h"
+#include "framework/gpu/rasterizer_threads.h"
+#include "framework/gpu/self_test.h"
+#include "framework/gpu/texture.h"
+
+namespace aftershade::gpu {
+namespace {
+
+constexpr std::array kBackends = {Backend::egl, Backend::egl_software, Backend::osmesa};
+bool takes(Backend chosen, Backend candidate) {
+    return chosen == candidate || chosen == Backend::automatic ||
+           (chosen == Backend::software && candidate != Backend::egl);
+}
+/// What OpenGL must have of the address space. With less, Mesa 22.3 crashes, or waits for threads that it
+/// could not start. Runs over one small frame were measured to take 260 to 280 MiB, most of it for LLVM.
+constexpr std::uint64_t kContextBytes = 320ull * 1024 * 1024;
+
+struct Reason {
+    Backend backend = Backend::automatic;
+    std::string text, advice;  ///< advice: of an absent library, "; install ..."
+};
+
+/// An Error that keeps its reasons apart, for probe_backends().
+class Refusal : public Error {
+public:
+    /// `other` is a backend that works in place of those refused, so that nothing need be installed.
+    Refusal(std::vector<Reason> reasons, std::optional<Backend> other)
+        : Error(ExitCode::gl, text(reasons, other)), reasons_(std::move(reasons)) {}
+    const Reason& last() const { return reasons_.back(); }
+
+private:
+    static std::string text(std::span<const Reason> reasons, std::optional<Backend> other) {
+        std::string result = "no usable GL";
+        for (const Reason& reason : reasons)
+            result += fmt::format("\n  {}: {}{}", backend_name(reason.backend), reason.text,
+                                  other ? "" : reason.advice);
+        if (other)
+            result +=
+                fmt::format("\n  '{}' works here and draws the same bits; '{}' takes whichever is there",
+                            backend_name(*other), backend_name(Backend::software));
+        return result;
+    }
+
+    std::vector<Reason> reasons_;
+};
+
+/// The other software backend, which draws the same bits, if it works here.
+std::optional<Backend> other_software_backend(Backend refused) {
+    if (refused != Backend::egl_software && refused != Backend::osmesa) return std::nullopt;
+    const Backend other = refused == Backend::osmesa ? Backend::egl_software : Backend::osmesa;
+    try {
+        const Context::Impl context(other);
+        return other;
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::vector<BackendReport> probe_backends() {
+    std::vector<BackendReport> reports;
+    std::vector<std::string> advice;
+    for (Backend backend : kBackends) {
+        BackendReport& report = reports.emplace_back();
+        report.backend = backend;
+        advice.emplace_back();
+        try {
+            report.info = Context(backend).info();
+            report.usable = true;
+        } catch (const Refusal& refusal) {
+            report.reason = refusal.last().text;
+            advice.back() = refusal.last().advice;
+        }
+    }
+    Context::Impl::release_current();
+    const bool has_software = std::ranges::any_of(
+        reports, [](const BackendReport& report) { return report.usable && report.info.software; });
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        if (!advice[i].empty())
+            reports[i].reason += has_software && reports[i].backend != Backend::egl
+                                     ? "; not needed, the other software backend draws the same bits"
+                                     : advice[i];
+    return reports;
+}
+
+Context::Context(const SharedEglContext& shared) {
+    require_not_forked();
+    require_address_space(kContextBytes, "OpenGL");
+    impl_ = std::make_unique<Impl>(shared);
+    self_test(*this);
+}
+
+Context::Context(SiblingOf other) {
+    require_not_forked();
+    Context::Impl::release_current();
+    const Impl& sibling = *other.context.impl_;
+    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling(other.shares_objects));
+}
+
+Context::Context(Backend backend, SelfTest when) {
+    require_not_forked();
+    // Mesa does not check every allocation: better refused here than a crash in there.
+    require_address_space(kContextBytes, "OpenGL");
+    std::vector<Reason> reasons;
+    for (Backend candidate : kBackends) {
+        if (!takes(backend, candidate)) continue;
+        try {
+            impl_ = std::make_unique<Impl>(candidate);
+            impl_->is_untested = true;
+            if (when == SelfTest::now || backend == Backend::automatic || !impl_->info.software) test_once();
+            if (backend == Backend::automatic && !reasons.empty() && impl_->info.software)
+                impl_->info.hardware_fault =
+                    fmt::format("{}: {}", backend_name(reasons.front().backend), reasons.front().text);
+            return;
+        } catch (const Error& error) {
+            impl_.reset();
+            if (error.exit_code() == ExitCode::memory) throw;
+            const auto* absent = dynamic_cast<const AbsentLibrary*>(&error);
+            reasons.push_back({candidate, error.what(), absent ? absent->advice() : ""});
+        }
+    }
+    throw Refusal(std::move(reasons), other_software_backend(backend));
+}
+
+void Context::test_once() {
+    if (!impl_->is_untested) return;
+    impl_->is_untested = false;  // it draws
+    try {
+        self_test(*this);
+    } catch (...) {
+        impl_->is_untested = true;
+        throw;
+    }
+    // Once they have drawn they are there, under their names.
+    if (impl_->info.software) spread_rasterizer_threads();
+}
+
+bool Context::zeroes_new_textures() {
+    if (!impl_->info.software) return false;
+    if (!impl_->zeroes_textures) {
+        // Small enough that the allocator gives what the first one had to the second one.
+        const TextureDesc desc{.width = 32, .height = 32, .format = TextureFormat::rgba32f};
+        const std::vector<float> ones(std::size_t(4 * desc.width * desc.height), 1.0F);
+        Texture(*this, desc, "ones").upload(ones);
+        finish();
+        const std::vector<float> found = Texture(*this, desc, "new").read_floats();
+        impl_->zeroes_textures = std::ranges::all_of(found, [](float value) { return value == 0; });
+    }
+    return *impl_->zeroes_textures;
+}
+
+}  // namespace aftershade::gpu
