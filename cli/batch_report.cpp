@@ -6,8 +6,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "framework/capture/frame_range.h"
 #include "framework/base/text.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade::cli {
 

@@ -6,7 +6,7 @@
 
 #include "framework/base/error.h"
 #include "framework/base/status.h"
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 namespace aftershade::cli {
 

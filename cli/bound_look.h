@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "cli/run_options.h"
+#include "cli/run_arguments.h"
 #include "framework/base/diagnostics.h"
 #include "framework/effect/registry.h"
 #include "framework/look/look.h"

@@ -7,12 +7,12 @@
 #include <iostream>
 #include <sstream>
 
-#include "framework/capture/capture.h"
-#include "framework/capture/capture_grammar.h"
-#include "framework/capture/frame_range.h"
 #include "framework/base/data_path.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/capture/capture.h"
+#include "framework/capture/capture_grammar.h"
+#include "framework/capture/frame_range.h"
 #include "framework/image/color_space.h"
 
 namespace aftershade::cli {

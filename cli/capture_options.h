@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "framework/capture/profile.h"
-#include "framework/capture/sequence.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/capture/profile.h"
+#include "framework/capture/sequence.h"
 #include "framework/file/exr_file.h"
 
 namespace CLI {

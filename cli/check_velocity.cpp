@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "framework/capture/capture.h"
 #include "framework/base/cores.h"
+#include "framework/capture/capture.h"
 #include "framework/inspect/velocity_frames.h"
 #include "framework/inspect/velocity_report.h"
 

@@ -8,10 +8,10 @@
 
 #include "cli/compare_options.h"
 #include "cli/verbs.h"
-#include "framework/compare/comparison_report.h"
-#include "framework/compare/difference_picture.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/cores.h"
+#include "framework/compare/comparison_report.h"
+#include "framework/compare/difference_picture.h"
 
 namespace aftershade::cli {
 

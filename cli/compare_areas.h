@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/compare/compare_files.h"
 #include "framework/base/diagnostics.h"
+#include "framework/compare/compare_files.h"
 
 namespace CLI {
 class App;

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cli/compare_areas.h"
-#include "framework/compare/compare_files.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/compare/compare_files.h"
 
 namespace CLI {
 class App;

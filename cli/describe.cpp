@@ -1,4 +1,4 @@
-#include "framework/effect/describe.h"
+#include "framework/effect/description.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -15,7 +15,7 @@
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/side_file.h"
-#include "framework/effect/describe.h"
+#include "framework/effect/description.h"
 #include "framework/scene/scene_schema.h"
 
 namespace aftershade::cli {

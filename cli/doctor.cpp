@@ -12,12 +12,12 @@
 
 #include "cli/plugin_options.h"
 #include "cli/verbs.h"
-#include "framework/batch/approved_image.h"
-#include "framework/effect/native/confinement.h"
 #include "framework/base/cores.h"
 #include "framework/base/error.h"
-#include "framework/effect/native/thread_limit.h"
+#include "framework/batch/approved_image.h"
+#include "framework/effect/native/confinement.h"
 #include "framework/effect/native/native_process.h"
+#include "framework/effect/native/thread_limit.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {

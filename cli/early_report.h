@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cli/run_options.h"
+#include "cli/run_arguments.h"
 
 namespace aftershade::cli {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "cli/capture_options.h"
-#include "framework/capture/sequence.h"
 #include "framework/base/diagnostics.h"
+#include "framework/capture/sequence.h"
 #include "framework/run/run_options.h"
 
 namespace aftershade::cli {

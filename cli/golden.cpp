@@ -12,12 +12,12 @@
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
-#include "framework/batch/golden_approve.h"
-#include "framework/batch/report_page.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/input_files.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
+#include "framework/batch/golden_approve.h"
+#include "framework/batch/report_page.h"
 
 namespace aftershade::cli {
 

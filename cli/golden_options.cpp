@@ -10,8 +10,8 @@
 #include "cli/compare_options.h"
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
-#include "framework/batch/worker.h"
 #include "framework/base/text.h"
+#include "framework/batch/worker.h"
 
 namespace aftershade::cli {
 

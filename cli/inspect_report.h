@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/capture.h"
 #include "framework/base/error.h"
+#include "framework/capture/capture.h"
 #include "framework/file/exr_file.h"
 #include "framework/inspect/channel_statistics.h"
 #include "framework/inspect/pixel_samples.h"

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "framework/capture/capture.h"
 #include "framework/base/error.h"
+#include "framework/capture/capture.h"
 #include "framework/file/exr_file.h"
 
 namespace aftershade::cli {

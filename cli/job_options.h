@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "framework/base/diagnostics.h"
 #include "framework/batch/job_plan.h"
 #include "framework/capture/sequence.h"
-#include "framework/base/diagnostics.h"
 #include "framework/look/pipeline.h"
 
 namespace CLI {

@@ -10,8 +10,8 @@
 #include "cli/batch_report.h"
 #include "cli/merge_reports.h"
 #include "cli/verbs.h"
-#include "framework/batch/farm_job.h"
 #include "framework/base/atomic_file.h"
+#include "framework/batch/farm_job.h"
 
 namespace aftershade::cli {
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "framework/capture/frame_range.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/side_file.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade::cli {
 

@@ -10,8 +10,8 @@
 
 #include "cli/command_line.h"
 #include "cli/interrupt.h"
-#include "framework/batch/worker.h"
 #include "framework/base/memory_limit.h"
+#include "framework/batch/worker.h"
 
 namespace aftershade::cli {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/batch/watchdog.h"
 #include "framework/base/error.h"
 #include "framework/base/status.h"
+#include "framework/batch/watchdog.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/native/native_process.h"
 

@@ -1,4 +1,4 @@
-// `run` over several frames: what is current is left alone (framework/run/resume.h).
+// `run` over several frames: what is current is left alone (framework/run/resumable_run.h).
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 #include <string>
 
 #include "framework/base/error.h"
-#include "framework/run/resume.h"
+#include "framework/run/resumable_run.h"
 
 namespace CLI {
 class App;

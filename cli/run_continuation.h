@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/run_options.h"
-#include "cli/run_report.h"
+#include "cli/run_arguments.h"
+#include "cli/run_messages.h"
 #include "framework/capture/capture.h"
 #include "framework/look/pipeline.h"
 

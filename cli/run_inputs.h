@@ -2,10 +2,10 @@
 #pragma once
 
 #include "cli/bound_look.h"
-#include "cli/run_options.h"
-#include "framework/capture/sequence.h"
+#include "cli/run_arguments.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/input_files.h"
+#include "framework/capture/sequence.h"
 #include "framework/run/output_options.h"
 
 namespace aftershade::cli {

@@ -15,8 +15,8 @@
 #include "framework/base/atomic_file.h"
 #include "framework/base/data_path.h"
 #include "framework/base/text.h"
-#include "framework/render/trace.h"
 #include "framework/gpu/timer.h"
+#include "framework/render/trace.h"
 
 namespace aftershade::cli {
 

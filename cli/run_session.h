@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "cli/bound_look.h"
-#include "cli/run_options.h"
-#include "cli/run_report.h"
+#include "cli/run_arguments.h"
+#include "cli/run_messages.h"
 #include "cli/watch.h"
 #include "framework/base/status.h"
 #include "framework/gpu/context.h"
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 namespace aftershade::cli {
 

@@ -11,11 +11,11 @@
 #include "cli/batch_report.h"
 #include "cli/command_line.h"
 #include "cli/run_continuation.h"
-#include "framework/batch/run_jobs.h"
-#include "framework/capture/frame_range.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/cores.h"
 #include "framework/base/text.h"
+#include "framework/batch/run_jobs.h"
+#include "framework/capture/frame_range.h"
 #include "framework/look/object_matches.h"
 #include "framework/run/run_lock.h"
 

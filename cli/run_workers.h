@@ -3,10 +3,10 @@
 
 #include <atomic>
 
-#include "cli/run_options.h"
-#include "cli/run_report.h"
-#include "framework/batch/job_plan.h"
+#include "cli/run_arguments.h"
+#include "cli/run_messages.h"
 #include "framework/base/error.h"
+#include "framework/batch/job_plan.h"
 #include "framework/look/pipeline.h"
 
 namespace aftershade::cli {

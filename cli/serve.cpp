@@ -1,4 +1,4 @@
-#include "framework/serve/serve.h"
+#include "framework/serve/serve_look.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -23,11 +23,11 @@
 #include "cli/interrupt.h"
 #include "cli/plugin_options.h"
 #include "cli/verbs.h"
-#include "framework/batch/watchdog.h"
-#include "framework/batch/worker.h"
 #include "framework/base/data_path.h"
 #include "framework/base/error.h"
 #include "framework/base/memory_limit.h"
+#include "framework/batch/watchdog.h"
+#include "framework/batch/worker.h"
 #include "framework/serve/drawer.h"
 
 extern char** environ;

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "cli/run_options.h"
+#include "cli/run_arguments.h"
 #include "framework/file/frame_stream.h"
 #include "framework/run/frame_run.h"
 

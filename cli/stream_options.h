@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "framework/capture/capture.h"
 #include "framework/base/diagnostics.h"
-#include "framework/run/output_options.h"
+#include "framework/capture/capture.h"
 #include "framework/look/pipeline.h"
+#include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
 
 namespace CLI {

@@ -20,7 +20,7 @@
 #include "framework/base/status.h"
 #include "framework/effect/program_store.h"
 #include "framework/look/look.h"
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 namespace aftershade::cli {
 

@@ -131,6 +131,25 @@ std::string circle_from(const std::string& start,
     return "";
 }
 
+/// A folder's base names, but for headers that are installed under the API's own names.
+std::map<std::string, std::set<std::string>> places_of_units() {
+    std::map<std::string, std::set<std::string>> places;
+    for (const char* folder : {"framework", "cli"})
+        for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+            const fs::path file = fs::relative(entry.path(), kRoot);
+            const std::string ending = file.extension().string();
+            if ((ending != ".h" && ending != ".cpp") || file.string().starts_with("framework/host/include"))
+                continue;
+            places[file.stem().string()].insert(file.parent_path().string());
+        }
+    return places;
+}
+
+TEST(Architecture, NoTwoUnitsHaveOneName) {
+    for (const auto& [name, places] : places_of_units())
+        EXPECT_EQ(places.size(), 1u) << name << ": " << *places.begin() << ", " << *places.rbegin();
+}
+
 TEST(Architecture, NoTwoUnitsOfAModuleNeedEachOther) {
     for (const auto& [module, allowed] : kAllowed) {
         const auto included = units_included(module);
@@ -171,7 +190,7 @@ std::vector<std::string> role_names() {
 
 TEST(Architecture, RolesAreToldApartByTheirKindsNotTheirNames) {
     // Words of documents and options, and the renderer, which says what it computes for each role.
-    const std::set<std::string> allowed = {"cli/run_options.cpp", "framework/compare/layer.cpp",
+    const std::set<std::string> allowed = {"cli/run_arguments.cpp", "framework/compare/layer.cpp",
                                            "framework/image/role.cpp", "framework/look/value_source.cpp",
                                            "framework/scene/capture_images.cpp"};
     std::string any;

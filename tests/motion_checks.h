@@ -14,7 +14,7 @@
 #include "framework/capture/sequence.h"
 #include "framework/compare/metrics.h"
 #include "framework/file/exr_file.h"
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/look_runner.h"
 #include "tests/scene/scene_text.h"
 

@@ -10,7 +10,7 @@
 
 #include "framework/compare/metrics.h"
 #include "framework/image/role.h"
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/camera_pose.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/look_runner.h"
 #include "tests/reference/burley.h"
 #include "tests/scene/scene_text.h"

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/compare/metrics.h"
-#include "framework/scene/renderer.h"
 #include "framework/scene/samples.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/not_finite.h"
 #include "tests/scene/scene_text.h"
 

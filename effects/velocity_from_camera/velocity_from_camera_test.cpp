@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/camera_pose.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"

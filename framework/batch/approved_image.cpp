@@ -11,11 +11,11 @@
 
 #include <sys/utsname.h>
 
-#include "framework/capture/frame_range.h"
 #include "framework/base/atomic_file.h"
-#include "framework/document/document.h"
 #include "framework/base/path_bounds.h"
 #include "framework/base/text.h"
+#include "framework/capture/frame_range.h"
+#include "framework/document/document.h"
 
 namespace aftershade {
 

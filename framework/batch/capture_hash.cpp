@@ -2,12 +2,12 @@
 
 #include <set>
 
-#include "framework/capture/frame_range.h"
-#include "framework/capture/sequence.h"
 #include "framework/base/content_hash.h"
 #include "framework/base/data_path.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/capture/frame_range.h"
+#include "framework/capture/sequence.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {

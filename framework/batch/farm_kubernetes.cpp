@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/batch/farm_files.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/batch/farm_files.h"
 
 namespace aftershade {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "framework/batch/farm_files.h"
 #include "framework/base/text.h"
+#include "framework/batch/farm_files.h"
 
 namespace aftershade {
 

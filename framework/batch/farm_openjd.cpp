@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/batch/farm_files.h"
 #include "framework/base/error.h"
+#include "framework/batch/farm_files.h"
 
 namespace aftershade {
 

@@ -4,11 +4,11 @@
 #include <list>
 #include <mutex>
 
-#include "framework/batch/capture_hash.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/input_files.h"
 #include "framework/base/side_file.h"
+#include "framework/batch/capture_hash.h"
 
 namespace aftershade {
 

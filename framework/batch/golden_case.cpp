@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "framework/base/path_bounds.h"
+#include "framework/base/text.h"
 #include "framework/batch/golden_grammar.h"
 #include "framework/capture/frame_range.h"
 #include "framework/document/grammar_reader.h"
-#include "framework/base/path_bounds.h"
-#include "framework/base/text.h"
 #include "framework/document/units.h"
 #include "framework/look/look.h"
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/diagnostics.h"
 #include "framework/compare/compare_area.h"
 #include "framework/compare/compare_files.h"
-#include "framework/base/diagnostics.h"
 #include "framework/document/document.h"
 #include "framework/document/object_keys.h"
 

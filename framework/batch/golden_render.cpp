@@ -6,12 +6,12 @@
 #include <optional>
 #include <set>
 
-#include "framework/batch/worker.h"
-#include "framework/capture/frame_range.h"
-#include "framework/capture/sequence.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/batch/worker.h"
+#include "framework/capture/frame_range.h"
+#include "framework/capture/sequence.h"
 #include "framework/file/exr_file.h"
 #include "framework/image/role.h"
 

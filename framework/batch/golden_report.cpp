@@ -9,9 +9,9 @@
 #include <thread>
 #include <utility>
 
-#include "framework/compare/comparison_report.h"
 #include "framework/base/lfs_pointer.h"
 #include "framework/base/text.h"
+#include "framework/compare/comparison_report.h"
 
 namespace aftershade {
 

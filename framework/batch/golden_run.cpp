@@ -11,12 +11,12 @@
 #include <set>
 #include <thread>
 
-#include "framework/batch/capture_hash.h"
-#include "framework/batch/look_hash.h"
 #include "framework/base/data_path.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/scratch_folder.h"
+#include "framework/batch/capture_hash.h"
+#include "framework/batch/look_hash.h"
 
 namespace aftershade {
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "framework/batch/golden_run.h"
-#include "framework/compare/difference_picture.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/lfs_pointer.h"
+#include "framework/batch/golden_run.h"
+#include "framework/compare/difference_picture.h"
 #include "framework/file/png_file.h"
 
 namespace aftershade {

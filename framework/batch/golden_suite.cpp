@@ -8,15 +8,15 @@
 #include <map>
 #include <set>
 
+#include "framework/base/data_path.h"
+#include "framework/base/error.h"
+#include "framework/base/path_bounds.h"
 #include "framework/batch/approved_image.h"
 #include "framework/batch/golden_grammar.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/sequence.h"
-#include "framework/base/data_path.h"
-#include "framework/base/error.h"
 #include "framework/document/grammar_reader.h"
 #include "framework/document/grammar_schema.h"
-#include "framework/base/path_bounds.h"
 
 namespace aftershade {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/batch/golden_case.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/input_files.h"
+#include "framework/batch/golden_case.h"
 
 namespace aftershade {
 

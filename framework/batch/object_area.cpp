@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <sstream>
 
-#include "framework/capture/capture.h"
-#include "framework/capture/sequence.h"
 #include "framework/base/data_path.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/capture/capture.h"
+#include "framework/capture/sequence.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "framework/batch/page_pixels.h"
-#include "framework/compare/layer_file.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/open_file.h"
 #include "framework/base/side_file.h"
+#include "framework/batch/page_pixels.h"
+#include "framework/compare/layer_file.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {

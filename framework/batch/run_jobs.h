@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/base/error.h"
 #include "framework/batch/job_plan.h"
 #include "framework/batch/watchdog.h"
 #include "framework/batch/worker.h"
-#include "framework/base/error.h"
 
 namespace aftershade {
 

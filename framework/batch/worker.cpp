@@ -10,8 +10,8 @@
 #include <csignal>
 #include <utility>
 
-#include "framework/batch/spawn.h"
 #include "framework/base/memory_limit.h"
+#include "framework/batch/spawn.h"
 
 namespace aftershade {
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "framework/capture/stored_matrices.h"
 #include "framework/base/error.h"
+#include "framework/capture/stored_matrices.h"
 #include "framework/document/units.h"
 
 namespace aftershade {

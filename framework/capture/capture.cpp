@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "framework/base/error.h"
 #include "framework/capture/bare_channels.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/capture/camera_motion.h"
@@ -12,7 +13,6 @@
 #include "framework/capture/decode.h"
 #include "framework/capture/layer_roles.h"
 #include "framework/capture/sample_means.h"
-#include "framework/base/error.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "framework/base/error.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/encode_role.h"
-#include "framework/base/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -3,10 +3,10 @@
 #include <set>
 #include <utility>
 
+#include "framework/base/error.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/common_names.h"
 #include "framework/capture/layer_roles.h"
-#include "framework/base/error.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
+#include "framework/base/error.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/layer_roles.h"
-#include "framework/base/error.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"
 

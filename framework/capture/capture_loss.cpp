@@ -1,6 +1,6 @@
 // What a frame's compression has altered of its data.
-#include "framework/capture/capture_internal.h"
 #include "framework/base/diagnostics.h"
+#include "framework/capture/capture_internal.h"
 #include "framework/file/exr_loss.h"
 #include "framework/image/role.h"
 

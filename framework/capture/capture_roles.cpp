@@ -3,12 +3,12 @@
 #include <set>
 #include <utility>
 
+#include "framework/base/error.h"
 #include "framework/capture/bare_channels.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/channel_names.h"
 #include "framework/capture/common_data.h"
 #include "framework/capture/common_names.h"
-#include "framework/base/error.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/base/error.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/encode_role.h"
-#include "framework/base/error.h"
 #include "framework/file/output_stream.h"
 #include "framework/image/role.h"
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <set>
 
-#include "framework/capture/channel_names.h"
 #include "framework/base/text.h"
+#include "framework/capture/channel_names.h"
 #include "framework/image/color_space.h"
 #include "framework/image/role.h"
 

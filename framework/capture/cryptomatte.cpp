@@ -12,13 +12,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "framework/capture/channel_names.h"
-#include "framework/capture/frame_file.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
+#include "framework/capture/channel_names.h"
+#include "framework/capture/frame_file.h"
 #include "framework/file/exr_loss.h"
 
 namespace aftershade {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "framework/capture/capture_grammar.h"
 #include "framework/base/error.h"
 #include "framework/base/parallel.h"
+#include "framework/capture/capture_grammar.h"
 #include "framework/image/coverage.h"
 #include "framework/image/role.h"
 

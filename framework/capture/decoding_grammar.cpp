@@ -3,8 +3,8 @@
 #include <map>
 #include <utility>
 
-#include "framework/capture/capture_grammar.h"
 #include "framework/base/text.h"
+#include "framework/capture/capture_grammar.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {

@@ -4,10 +4,10 @@
 #include <array>
 #include <utility>
 
-#include "framework/capture/common_names.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/capture/common_names.h"
 #include "framework/image/window.h"
 
 namespace aftershade {

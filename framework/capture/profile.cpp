@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "framework/capture/channel_names.h"
-#include "framework/capture/common_names.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/capture/channel_names.h"
+#include "framework/capture/common_names.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/found_channels.h"
 #include "framework/base/diagnostics.h"
+#include "framework/capture/found_channels.h"
 #include "framework/document/document.h"
 #include "framework/file/exr_file.h"
 

@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
+#include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/document/document.h"
-#include "framework/base/error.h"
 #include "framework/document/grammar_reader.h"
-#include "framework/base/text.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

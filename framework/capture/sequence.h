@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/diagnostics.h"
 #include "framework/capture/deep_layers.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/light.h"
 #include "framework/capture/profile.h"
-#include "framework/base/diagnostics.h"
 #include "framework/image/camera.h"
 
 namespace aftershade {

@@ -6,9 +6,9 @@
 #include <cassert>
 #include <cstddef>
 
-#include "framework/compare/layer_file.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/compare/layer_file.h"
 #include "framework/file/png_file.h"
 
 namespace aftershade {

@@ -6,8 +6,8 @@
 #include <set>
 #include <span>
 
-#include "framework/compare/layer_pairs.h"
 #include "framework/base/error.h"
+#include "framework/compare/layer_pairs.h"
 #include "framework/image/window.h"
 
 namespace aftershade {

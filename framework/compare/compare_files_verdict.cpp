@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "framework/base/parallel.h"
 #include "framework/compare/compare_files.h"
 #include "framework/compare/perceptual.h"
-#include "framework/base/parallel.h"
 
 namespace aftershade {
 

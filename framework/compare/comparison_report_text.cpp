@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/compare/comparison_report.h"
 #include "framework/base/text.h"
+#include "framework/compare/comparison_report.h"
 #include "framework/document/units.h"
 
 namespace aftershade {

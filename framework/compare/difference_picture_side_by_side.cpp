@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "framework/compare/difference_picture.h"
 #include "framework/base/text.h"
+#include "framework/compare/difference_picture.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {

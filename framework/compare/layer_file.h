@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/compare/layer.h"
 #include "framework/base/open_file.h"
+#include "framework/compare/layer.h"
 
 namespace aftershade {
 

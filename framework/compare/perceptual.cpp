@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "framework/compare/ssim.h"
 #include "framework/base/parallel.h"
+#include "framework/compare/ssim.h"
 #include "framework/image/srgb.h"
 
 namespace aftershade {

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "framework/base/parallel.h"
 #include "framework/compare/forgiveness.h"
 #include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_pair.h"
-#include "framework/base/parallel.h"
 
 namespace aftershade {
 

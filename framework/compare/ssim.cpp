@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "framework/compare/row_filter.h"
 #include "framework/base/parallel.h"
+#include "framework/compare/row_filter.h"
 
 namespace aftershade {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "framework/document/grammar_form.h"
 #include "framework/base/text.h"
+#include "framework/document/grammar_form.h"
 
 namespace aftershade::grammar {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "framework/document/grammar_form.h"
 #include "framework/base/text.h"
+#include "framework/document/grammar_form.h"
 #include "framework/document/units.h"
 
 namespace aftershade::grammar {

@@ -23,8 +23,8 @@ struct ParamTypeTraits;
 extern const ParamTypeTraits kFloatParam, kIntParam, kBoolParam, kEnumParam, kAngleParam, kColorParam,
     kVec2Param, kVec3Param, kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam;
 
-/// One of the types that a table lists (core_param_types()); framework/document/param_type.h has what a type is.
-/// The named ones are those that code means by themselves. [value type]
+/// One of the types that a table lists (core_param_types()); framework/document/param_type.h has what a type
+/// is. The named ones are those that code means by themselves. [value type]
 class ParamType {
 public:
     constexpr ParamType(const ParamTypeTraits& traits) : traits_(&traits) {}

@@ -1,7 +1,7 @@
 // Values as text.
+#include "framework/base/text.h"
 #include "framework/document/param_type.h"
 #include "framework/document/table_keys.h"
-#include "framework/base/text.h"
 #include "framework/document/units.h"
 
 namespace aftershade {

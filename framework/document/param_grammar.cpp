@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "framework/base/text.h"
 #include "framework/document/grammar_form.h"
 #include "framework/document/param_type.h"
-#include "framework/base/text.h"
 #include "framework/document/units.h"
 
 namespace aftershade {

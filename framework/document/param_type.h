@@ -1,6 +1,6 @@
 // What a parameter's type is: all that differs between types, in one table entry each. A new type is a file
-// like those of framework/document/param_types and a line in the list of core_param_types() or, where it needs
-// more than core, of framework/effect/param_types.cpp.
+// like those of framework/document/param_types and a line in the list of core_param_types() or, where it
+// needs more than core, of framework/effect/param_types.cpp.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/document/param_type.h"
-#include "framework/effect/describe.h"
+#include "framework/effect/description.h"
 
 namespace aftershade {
 

@@ -17,6 +17,10 @@ std::string_view backend_name(Backend backend);
 /// What parse_backend() takes, for messages: "auto, egl, software, egl-software, osmesa".
 std::string backend_names();
 
+/// Loads OSMesa's library, where that is the backend: a thread may while the caller reads its documents. What
+/// fails here fails again, and says why, where the context is made. [any thread]
+void load_ahead(Backend backend) noexcept;
+
 /// An EGLDisplay and an EGLContext of desktop OpenGL.
 struct SharedEglContext {
     void* display = nullptr;

@@ -18,6 +18,7 @@
 #include "framework/gpu/foreign_context.h"
 #include "framework/gpu/fork_guard.h"
 #include "framework/gpu/handle.h"
+#include "framework/gpu/make_platform.h"
 
 namespace aftershade::gpu {
 namespace {

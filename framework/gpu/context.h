@@ -48,10 +48,6 @@ struct ObjectCounts {
     std::size_t total() const { return buffers + textures + programs + framebuffers + views; }
 };
 
-/// Loads OSMesa's library, where that is the backend: a thread may while the caller reads its documents. What
-/// fails here fails again, and says why, where the context is made. [any thread]
-void load_ahead(Backend backend) noexcept;
-
 /// When a context draws its self-test, which llvmpipe takes 40 ms to compile from an empty cache; threads may
 /// compile the caller's programs meanwhile. With `at_first_use` test_once(), or the first draw or dispatch,
 /// draws it, where the caller names a backend and the renderer is software. Else it is drawn at once: another

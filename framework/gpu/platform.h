@@ -35,9 +35,6 @@ public:
     virtual Proc proc(const char* name) const = 0;
 };
 
-/// Throws Error(ExitCode::gl) whose message is the reason alone.
-std::unique_ptr<Platform> make_platform(Backend backend);
-
 /// True for the GL_RENDERER of a CPU rasteriser.
 bool is_software_renderer(std::string_view renderer);
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "aftershade/host.h"
-#include "framework/capture/profile.h"
 #include "framework/base/data_path.h"
+#include "framework/capture/profile.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/pass_program.h"
 #include "framework/effect/registry.h"

@@ -9,7 +9,7 @@
 #include "framework/base/cores.h"
 #include "framework/base/text.h"
 #include "framework/gpu/external_texture.h"
-#include "framework/host/non_finite.h"
+#include "framework/host/host_non_finite.h"
 #include "framework/image/role.h"
 #include "framework/run/nan_policy.h"
 

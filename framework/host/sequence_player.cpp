@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "framework/host/non_finite.h"
+#include "framework/host/host_non_finite.h"
 
 namespace aftershade::host {
 

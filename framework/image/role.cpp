@@ -5,8 +5,8 @@
 #include <system_error>
 #include <utility>
 
-#include "framework/document/document.h"
 #include "framework/base/text.h"
+#include "framework/document/document.h"
 #include "framework/image/step_role.h"
 
 namespace aftershade {

@@ -4,8 +4,8 @@
 #include <set>
 #include <utility>
 
-#include "framework/document/grammar_reader.h"
 #include "framework/base/path_bounds.h"
+#include "framework/document/grammar_reader.h"
 #include "framework/look/look_grammar.h"
 
 namespace aftershade {

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/document/schema_pieces.h"
 #include "framework/base/text.h"
+#include "framework/document/schema_pieces.h"
 #include "framework/image/image_forms.h"
 
 namespace aftershade {

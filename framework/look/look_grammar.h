@@ -1,5 +1,5 @@
-// The grammar of a look, declared once (framework/document/grammar.h). What the parameters, inputs and presets of
-// each effect are its manifest says.
+// The grammar of a look, declared once (framework/document/grammar.h). What the parameters, inputs and
+// presets of each effect are its manifest says.
 #pragma once
 
 #include <cstddef>

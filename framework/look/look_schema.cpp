@@ -5,11 +5,11 @@
 #include "framework/document/param_type.h"
 #include "framework/document/schema_pieces.h"
 #include "framework/document/units.h"
-#include "framework/effect/describe.h"
+#include "framework/effect/description.h"
 #include "framework/image/camera.h"
 #include "framework/look/look_grammar.h"
+#include "framework/look/look_schema.h"
 #include "framework/look/pipeline.h"
-#include "framework/look/schema.h"
 
 namespace aftershade {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/document/param_type.h"
 #include "framework/base/text.h"
+#include "framework/document/param_type.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/capture.h"
-#include "framework/capture/cryptomatte.h"
 #include "framework/base/error.h"
 #include "framework/base/status.h"
+#include "framework/capture/capture.h"
+#include "framework/capture/cryptomatte.h"
 #include "framework/look/pipeline.h"
 
 namespace aftershade {

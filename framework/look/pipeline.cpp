@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "framework/capture/channel_names.h"
 #include "framework/base/error.h"
-#include "framework/document/param_type.h"
 #include "framework/base/text.h"
+#include "framework/capture/channel_names.h"
+#include "framework/document/param_type.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
 

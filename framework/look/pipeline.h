@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/capture.h"
 #include "framework/base/diagnostics.h"
+#include "framework/capture/capture.h"
 #include "framework/document/document.h"
 #include "framework/document/param.h"
 #include "framework/effect/manifest/manifest.h"

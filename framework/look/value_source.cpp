@@ -5,10 +5,10 @@
 #include <cmath>
 #include <iterator>
 
-#include "framework/capture/cryptomatte.h"
 #include "framework/base/error.h"
-#include "framework/document/param_type.h"
 #include "framework/base/text.h"
+#include "framework/capture/cryptomatte.h"
+#include "framework/document/param_type.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
 

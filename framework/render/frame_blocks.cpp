@@ -6,9 +6,9 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 
-#include "framework/capture/cryptomatte.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/capture/cryptomatte.h"
 #include "framework/image/camera_matrix.h"
 
 namespace aftershade {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "framework/capture/cryptomatte.h"
 #include "framework/base/error.h"
+#include "framework/capture/cryptomatte.h"
 #include "framework/document/param_type.h"
 
 namespace aftershade {

@@ -15,11 +15,11 @@
 #include "framework/effect/param_reader.h"
 #include "framework/effect/pass_program.h"
 #include "framework/graph/frame_graph.h"
+#include "framework/look/pixel_shape.h"
 #include "framework/render/built_graph.h"
 #include "framework/render/graph_bindings.h"
 #include "framework/render/graph_key.h"
 #include "framework/render/pass_programs.h"
-#include "framework/look/pixel_shape.h"
 #include "framework/render/step_files.h"
 
 namespace aftershade {

@@ -10,8 +10,8 @@
 #include "framework/effect/param_reader.h"
 #include "framework/gpu/texture.h"
 #include "framework/image/square_pixels.h"
-#include "framework/render/native_steps.h"
 #include "framework/look/pipeline.h"
+#include "framework/render/native_steps.h"
 
 namespace aftershade {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "framework/image/role.h"
-#include "framework/render/frame_blocks.h"
 #include "framework/look/pixel_shape.h"
+#include "framework/render/frame_blocks.h"
 
 namespace aftershade {
 

@@ -11,9 +11,9 @@
 #include "framework/effect/pass_program.h"
 #include "framework/gpu/textures_ahead.h"
 #include "framework/graph/fusion.h"
+#include "framework/look/pipeline.h"
 #include "framework/render/compile_ahead.h"
 #include "framework/render/graph_bindings.h"
-#include "framework/look/pipeline.h"
 
 namespace aftershade {
 

@@ -8,9 +8,9 @@
 #include "framework/base/spare_memory.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
+#include "framework/look/pixel_shape.h"
 #include "framework/render/graph_builder.h"
 #include "framework/render/history_file.h"
-#include "framework/look/pixel_shape.h"
 
 namespace aftershade {
 

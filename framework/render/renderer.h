@@ -15,9 +15,9 @@
 #include "framework/effect/pass_program.h"
 #include "framework/gpu/buffer.h"
 #include "framework/graph/executor.h"
+#include "framework/look/pipeline.h"
 #include "framework/render/audit.h"
 #include "framework/render/native_steps.h"
-#include "framework/look/pipeline.h"
 #include "framework/render/step_files.h"
 #include "framework/render/telemetry.h"
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/capture/frame_range.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
+#include "framework/capture/frame_range.h"
 #include "framework/render/history_file.h"
 
 namespace aftershade {

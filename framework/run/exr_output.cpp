@@ -5,9 +5,9 @@
 #include <set>
 #include <utility>
 
-#include "framework/capture/camera_metadata.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/capture/camera_metadata.h"
 #include "framework/file/exr_loss.h"
 #include "framework/image/role.h"
 #include "framework/image/window.h"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "framework/capture/capture.h"
-#include "framework/run/output_options.h"
 #include "framework/render/renderer.h"
+#include "framework/run/output_options.h"
 
 namespace aftershade {
 

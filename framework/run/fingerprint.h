@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "framework/effect/native/native_library.h"
-#include "framework/run/frame_files.h"
 #include "framework/look/look.h"
+#include "framework/run/frame_files.h"
 #include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
 

@@ -6,8 +6,8 @@
 #include "framework/base/error.h"
 #include "framework/document/object_keys.h"
 #include "framework/document/param_type.h"
-#include "framework/run/fingerprint.h"
 #include "framework/look/look_content.h"
+#include "framework/run/fingerprint.h"
 
 namespace aftershade {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "framework/capture/capture_window.h"
 #include "framework/base/error.h"
+#include "framework/capture/capture_window.h"
 #include "framework/image/role.h"
-#include "framework/run/nan_policy.h"
 #include "framework/look/pixel_shape.h"
+#include "framework/run/nan_policy.h"
 
 namespace aftershade {
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
-#include "framework/run/frame_files.h"
 #include "framework/look/object_matches.h"
 #include "framework/look/pipeline.h"
 #include "framework/look/reach.h"
+#include "framework/run/frame_files.h"
 #include "framework/run/run_options.h"
 
 namespace aftershade {

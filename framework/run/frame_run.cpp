@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "framework/capture/capture_window.h"
 #include "framework/base/error.h"
-#include "framework/render/trace.h"
+#include "framework/capture/capture_window.h"
 #include "framework/image/window.h"
+#include "framework/render/trace.h"
 
 namespace aftershade {
 

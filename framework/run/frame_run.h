@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "framework/render/renderer.h"
 #include "framework/run/frame_loader.h"
 #include "framework/run/nan_policy.h"
-#include "framework/render/renderer.h"
 #include "framework/run/run_report.h"
 
 namespace aftershade {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/capture.h"
-#include "framework/capture/frame_range.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/input_files.h"
-#include "framework/run/output_options.h"
+#include "framework/capture/capture.h"
+#include "framework/capture/frame_range.h"
 #include "framework/render/renderer.h"
+#include "framework/run/output_options.h"
 
 namespace aftershade {
 

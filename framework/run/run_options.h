@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "framework/render/trace.h"
 #include "framework/image/image.h"
 #include "framework/render/native_steps.h"
+#include "framework/render/trace.h"
 
 namespace aftershade {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/capture.h"
 #include "framework/base/error.h"
 #include "framework/base/status.h"
+#include "framework/capture/capture.h"
 #include "framework/gpu/context.h"
 #include "framework/render/audit.h"
 #include "framework/render/telemetry.h"

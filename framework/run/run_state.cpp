@@ -1,9 +1,9 @@
 #include "framework/run/run_state.h"
 
-#include "framework/capture/frame_range.h"
 #include "framework/base/content_hash.h"
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 namespace aftershade {
 

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/data_path.h"
-#include "framework/document/grammar_reader.h"
 #include "framework/base/path_bounds.h"
 #include "framework/base/text.h"
+#include "framework/document/grammar_reader.h"
 #include "framework/document/units.h"
 #include "framework/scattering/scattering_grammar.h"
 #include "framework/scattering/scattering_profile.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 
 namespace aftershade::scene {
 

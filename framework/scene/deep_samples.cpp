@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "framework/base/parallel.h"
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 
 namespace aftershade::scene {
 

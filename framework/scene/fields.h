@@ -1,5 +1,5 @@
-// The grammar of a scene document, declared once (framework/document/grammar.h), and its values as the renderer
-// has them.
+// The grammar of a scene document, declared once (framework/document/grammar.h), and its values as the
+// renderer has them.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -8,11 +8,11 @@
 #include <set>
 #include <utility>
 
-#include "framework/capture/capture_writer.h"
-#include "framework/capture/light.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
+#include "framework/capture/capture_writer.h"
+#include "framework/capture/light.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
 #include "framework/scene/rate_image.h"

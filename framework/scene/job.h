@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/profile.h"
 #include "framework/base/diagnostics.h"
+#include "framework/capture/profile.h"
 #include "framework/file/exr_file.h"
-#include "framework/scene/renderer.h"
 #include "framework/scene/scene.h"
+#include "framework/scene/scene_renderer.h"
 #include "framework/scene/visibility.h"
 
 namespace aftershade::scene {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "framework/base/parallel.h"
-#include "framework/scene/renderer.h"
 #include "framework/scene/scatter_points.h"
+#include "framework/scene/scene_renderer.h"
 
 namespace aftershade::scene {
 

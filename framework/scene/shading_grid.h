@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 
 namespace aftershade::scene {
 

@@ -3,7 +3,7 @@
 #include "framework/base/parallel.h"
 #include "framework/image/role.h"
 #include "framework/scene/capture_images.h"
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "framework/scene/surface_map.h"
 
 namespace aftershade::scene {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "framework/scene/shading_cache.h"
 #include "framework/scene/shading_grid.h"
 #include "framework/scene/transparency.h"

@@ -15,7 +15,7 @@
 #include "framework/serve/look_model.h"
 #include "framework/serve/picture_maker.h"
 #include "framework/serve/refusal.h"
-#include "framework/serve/serve.h"
+#include "framework/serve/serve_look.h"
 
 namespace aftershade::serve {
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "framework/base/atomic_file.h"
-#include "framework/document/document.h"
 #include "framework/base/side_file.h"
+#include "framework/document/document.h"
 #include "framework/serve/refusal.h"
 
 namespace aftershade::serve {

@@ -7,7 +7,7 @@
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/path_bounds.h"
-#include "framework/effect/describe.h"
+#include "framework/effect/description.h"
 #include "framework/serve/look_edits.h"
 #include "framework/serve/look_state.h"
 

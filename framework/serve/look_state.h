@@ -5,8 +5,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "framework/capture/capture.h"
 #include "framework/base/diagnostics.h"
+#include "framework/capture/capture.h"
 #include "framework/effect/registry.h"
 
 namespace aftershade::serve {

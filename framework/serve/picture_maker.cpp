@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/capture/capture_window.h"
 #include "framework/base/cores.h"
 #include "framework/base/error.h"
+#include "framework/capture/capture_window.h"
 #include "framework/effect/pass_program.h"
 #include "framework/effect/program_store.h"
 #include "framework/image/role.h"

@@ -11,12 +11,12 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "framework/base/status.h"
 #include "framework/capture/capture.h"
 #include "framework/capture/sequence.h"
-#include "framework/base/status.h"
 #include "framework/gpu/context.h"
-#include "framework/run/frame_loader.h"
 #include "framework/render/renderer.h"
+#include "framework/run/frame_loader.h"
 #include "framework/serve/look_model.h"
 
 namespace aftershade::serve {

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "framework/image/image.h"
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "framework/scene/shading_cache.h"
 #include "framework/scene/shading_grid.h"
 #include "framework/visibility/gpu_visibility.h"

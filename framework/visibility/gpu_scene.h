@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "framework/scene/shading_grid.h"
 
 namespace aftershade::visibility {

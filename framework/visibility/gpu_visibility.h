@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "framework/scene/shading_grid.h"
 #include "framework/scene/visibility.h"
 #include "framework/visibility/bands.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/frame_range.h"
 #include "framework/base/error.h"
+#include "framework/capture/frame_range.h"
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/not_finite.h"

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/error.h"
 #include "framework/compare/compare_files.h"
 #include "framework/compare/comparison_report.h"
 #include "framework/compare/difference_picture.h"
-#include "framework/base/error.h"
 #include "tests/compare/pictures.h"
 
 namespace aftershade::test {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <map>
 
-#include "framework/compare/layer_file.h"
 #include "framework/base/error.h"
+#include "framework/compare/layer_file.h"
 #include "framework/image/role.h"
 #include "tests/compare/pictures.h"
 #include "tests/real_captures.h"

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <charconv>
 
+#include "framework/base/text.h"
 #include "framework/document/grammar_schema.h"
 #include "framework/document/grammar_table.h"
 #include "framework/document/param_grammar.h"
 #include "framework/document/schema_pieces.h"
-#include "framework/base/text.h"
 #include "framework/document/units.h"
 #include "tests/document/param_specs.h"
 

@@ -1,7 +1,7 @@
 // Tile lists: what they become, and what is wrong with the rest.
 #include <algorithm>
 
-#include "framework/effect/describe.h"
+#include "framework/effect/description.h"
 #include "framework/effect/shader_source.h"
 #include "framework/effect/usage_check.h"
 #include "tests/effect/assembly.h"

@@ -1,8 +1,8 @@
 // Every form that a value of a look may have, and what each gives for a frame.
 #include <gtest/gtest.h>
 
-#include "framework/capture/cryptomatte.h"
 #include "framework/base/error.h"
+#include "framework/capture/cryptomatte.h"
 #include "framework/file/png_file.h"
 #include "tests/file/png_chunks.h"
 #include "tests/render/effect_fixture.h"

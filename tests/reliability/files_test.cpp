@@ -8,11 +8,11 @@
 #include <functional>
 #include <string>
 
+#include "framework/base/error.h"
 #include "framework/batch/golden_run.h"
 #include "framework/capture/capture.h"
 #include "framework/capture/profile.h"
 #include "framework/compare/comparison_report.h"
-#include "framework/base/error.h"
 #include "framework/file/exr_file.h"
 #include "framework/file/hdr_file.h"
 #include "framework/file/png_file.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/cryptomatte.h"
 #include "framework/base/error.h"
+#include "framework/capture/cryptomatte.h"
 #include "tests/backends.h"
 #include "tests/render/effect_fixture.h"
 

@@ -1,5 +1,5 @@
 // Whole runs: when they give back what they hold on the GPU.
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 #include <gtest/gtest.h>
 

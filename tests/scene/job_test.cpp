@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/capture/sequence.h"
 #include "framework/base/error.h"
+#include "framework/capture/sequence.h"
 #include "tests/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 

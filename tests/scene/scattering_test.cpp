@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "framework/scene/renderer.h"
 #include "framework/scene/scatter_points.h"
 #include "framework/scene/scene_reader.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/reference/burley.h"
 #include "tests/scene/scene_text.h"
 #include "tests/temporary_folder.h"

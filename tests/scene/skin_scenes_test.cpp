@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/scene/scene_text.h"
 
 namespace aftershade::scene {

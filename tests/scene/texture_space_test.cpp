@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "framework/scene/surface_map.h"
 #include "tests/scene/scene_text.h"
 

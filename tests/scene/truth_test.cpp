@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 #include "tests/polygon.h"
 #include "tests/scene/scene_text.h"
 

@@ -1,10 +1,10 @@
 // The path of a file: a picture or a colour table. What is in it the host reads.
 #include <filesystem>
 
+#include "framework/base/text.h"
 #include "framework/document/grammar.h"
 #include "framework/document/param_type.h"
 #include "framework/document/schema_pieces.h"
-#include "framework/base/text.h"
 
 namespace aftershade {
 

@@ -1,11 +1,11 @@
 // Rows by object, of columns that the declaration names.
 #include <utility>
 
+#include "framework/base/text.h"
 #include "framework/document/grammar.h"
 #include "framework/document/param_type.h"
 #include "framework/document/schema_pieces.h"
 #include "framework/document/table_keys.h"
-#include "framework/base/text.h"
 
 namespace aftershade {
 

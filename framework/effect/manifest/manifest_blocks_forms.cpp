@@ -3,8 +3,8 @@
 #include <cctype>
 #include <utility>
 
-#include "framework/document/schema_pieces.h"
 #include "framework/base/text.h"
+#include "framework/document/schema_pieces.h"
 #include "framework/effect/manifest/manifest_blocks.h"
 #include "framework/effect/manifest/manifest_when.h"
 

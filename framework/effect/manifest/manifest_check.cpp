@@ -9,8 +9,8 @@
 #include <utility>
 #include <variant>
 
-#include "framework/document/param_type.h"
 #include "framework/base/path_bounds.h"
+#include "framework/document/param_type.h"
 #include "framework/effect/glsl_names.h"
 
 namespace aftershade {

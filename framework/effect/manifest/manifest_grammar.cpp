@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "framework/base/text.h"
 #include "framework/document/grammar_schema.h"
 #include "framework/document/param_grammar.h"
 #include "framework/document/schema_pieces.h"
-#include "framework/base/text.h"
 #include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_blocks.h"
 #include "framework/effect/param_types.h"

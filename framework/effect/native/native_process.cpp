@@ -19,10 +19,10 @@
 #include "framework/base/child_process.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
-#include "framework/effect/native/thread_limit.h"
 #include "framework/document/units.h"
 #include "framework/effect/native/native_call.h"
 #include "framework/effect/native/native_wire.h"
+#include "framework/effect/native/thread_limit.h"
 
 extern char** environ;
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "framework/effect/native/confinement.h"
 #include "framework/base/error.h"
+#include "framework/effect/native/confinement.h"
 #include "framework/effect/native/native_effect.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/native/native_process.h"

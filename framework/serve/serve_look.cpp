@@ -1,4 +1,4 @@
-#include "framework/serve/serve.h"
+#include "framework/serve/serve_look.h"
 
 #include <memory>
 #include <optional>

@@ -11,7 +11,7 @@
 #include "framework/run/checkpoints.h"
 #include "framework/run/fingerprint.h"
 #include "framework/run/journal.h"
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 namespace aftershade {
 

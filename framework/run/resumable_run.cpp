@@ -1,4 +1,4 @@
-#include "framework/run/resume.h"
+#include "framework/run/resumable_run.h"
 
 #include <algorithm>
 

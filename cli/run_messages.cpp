@@ -1,4 +1,4 @@
-#include "cli/run_report.h"
+#include "cli/run_messages.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "framework/capture/frame_range.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/capture/frame_range.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {

@@ -1,4 +1,4 @@
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 #include <algorithm>
 #include <chrono>

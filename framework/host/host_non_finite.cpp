@@ -1,4 +1,4 @@
-#include "framework/host/non_finite.h"
+#include "framework/host/host_non_finite.h"
 
 #include <cmath>
 #include <utility>

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "framework/run/run.h"
+#include "framework/run/run_frames.h"
 
 namespace aftershade::cli {
 

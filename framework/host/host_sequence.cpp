@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "aftershade/capture.h"
-#include "framework/capture/capture_window.h"
 #include "framework/base/text.h"
+#include "framework/capture/capture_window.h"
 #include "framework/host/host_data.h"
 #include "framework/host/image_data.h"
 

@@ -12,8 +12,8 @@
 #include "cli/stream_options.h"
 #include "framework/base/diagnostics.h"
 #include "framework/look/look.h"
-#include "framework/run/output_options.h"
 #include "framework/look/pipeline.h"
+#include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
 
 namespace CLI {

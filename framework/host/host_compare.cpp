@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "framework/compare/compare_files.h"
 #include "framework/base/text.h"
+#include "framework/compare/compare_files.h"
 #include "framework/host/failures.h"
 #include "framework/host/image_data.h"
 

@@ -1,4 +1,4 @@
-#include "cli/run_options.h"
+#include "cli/run_arguments.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

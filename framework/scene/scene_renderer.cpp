@@ -1,4 +1,4 @@
-#include "framework/scene/renderer.h"
+#include "framework/scene/scene_renderer.h"
 
 #include <algorithm>
 #include <limits>

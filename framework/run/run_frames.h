@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
-#include "framework/run/output_options.h"
 #include "framework/look/pipeline.h"
 #include "framework/render/renderer.h"
+#include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
 #include "framework/run/run_report.h"
 

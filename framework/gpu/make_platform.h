@@ -1,0 +1,13 @@
+// The platform of a backend. Internal to framework/gpu.
+#pragma once
+
+#include <memory>
+
+#include "framework/gpu/platform.h"
+
+namespace aftershade::gpu {
+
+/// Throws Error(ExitCode::gl) whose message is the reason alone.
+std::unique_ptr<Platform> make_platform(Backend backend);
+
+}  // namespace aftershade::gpu
