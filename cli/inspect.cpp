@@ -153,6 +153,21 @@ void add_warning(std::string warning, Inspection& inspection) {
     if (!warning.empty()) inspection.warnings.push_back(std::move(warning));
 }
 
+/// Roles that other channels could give, too: their pixels say whether it matters.
+void warn_of_other_channels(const CaptureReader& reader, Inspection& inspection) {
+    if (!inspection.capture || inspection.capture->other_channels.empty()) return;
+    std::vector<std::string> roles;
+    for (const auto& [role, others] : inspection.capture->other_channels) roles.push_back(role);
+    try {
+        for (const std::string& warning : reader.read(inspection.capture->frame, roles).header.warnings)
+            if (std::ranges::find(inspection.capture->warnings, warning) ==
+                inspection.capture->warnings.end())
+                inspection.capture->warnings.push_back(warning);
+    } catch (const Error&) {
+        // Said where the channels are listed, or by whoever needs the roles.
+    }
+}
+
 void warn_of_normals(const CaptureReader& reader, Inspection& inspection) {
     if (!inspection.capture) return;
     for (const std::string& role : inspection.capture->roles) {
@@ -274,6 +289,7 @@ ExitCode inspect(const InspectOptions& options) {
     inspection.lists_channels = options.channels;
     note_deep_reduction(reader, inspection);
     warn_of_stored_values(inspection);
+    warn_of_other_channels(reader, inspection);
     warn_of_normals(reader, inspection);
     find_depth_kind_of(reader, inspection);
     if (options.cryptomatte) add_coverage(*options.cryptomatte, reader, inspection);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/run_arguments.h"
+#include "framework/capture/capture_window.h"
 #include "framework/file/frame_stream.h"
 #include "framework/run/frame_run.h"
 
@@ -50,7 +51,9 @@ std::string ffmpeg_command(const CaptureReader& reader, const Sequence& sequence
                            const OutputOptions& outputs) {
     if (!outputs.stream_format) return "";
     const CaptureHeader header = reader.read_header(sequence.file_number(run.frames.front()));
-    const Window window = written_window(header.display_window, run);
+    const Window& display = header.display_window;
+    const Window window = intersection(written_window(display, run),
+                                       scaled_window(whole_picture(header), display, run.scale_divisor));
     return "ffmpeg " +
            ffmpeg_input_options(*outputs.stream_format, window.width(), window.height(), sequence.fps) +
            " -i -";

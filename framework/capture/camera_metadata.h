@@ -13,16 +13,18 @@
 
 namespace aftershade {
 
-/// The profile's own attributes first, then OpenEXR's standard ones (focus, aperture, nominalFocalLength,
+/// The profile's own attributes first, then OpenEXR's standard ones (focus, aperture, effectiveFocalLength or
+/// nominalFocalLength, which is what stands on the lens,
 /// sensorOverallDimensions; the matrices as stored_matrices.h has them) and aftershade/camera/<field>. Values
 /// that are not positive where the field must be are taken as not known: producers write 0 for that. The lens
-/// of `known` stands above the header's where matrices are recognized by it.
+/// of `known` stands above the header's where matrices are recognized by it. Where the header's lens shows
+/// another angle than its matrices, by more than 1 %, its sensor is as wide as theirs.
 Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Camera& known = {});
 
-/// Attributes that are below 0 or not a number, and should give a field of the camera that `known` lacks. In
-/// whole sentences.
-std::vector<std::string> camera_faults(const ExrMetadata& metadata, const Profile& profile,
-                                       const Camera& known);
+/// Attributes that should give a field of the camera that `known` lacks, and are below 0, not a number, or
+/// more than 1 % from one that gives it; a lens that shows another angle than the matrices; matrices that are
+/// none. In whole sentences.
+std::vector<std::string> camera_faults(const ExrPart& part, const Profile& profile, const Camera& known);
 
 /// The way back: aftershade/camera/..., OpenEXR's own focus, aperture and nominalFocalLength, both matrices,
 /// aftershade/jitter_px and aftershade/lights, each where it is known.

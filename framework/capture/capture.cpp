@@ -1,6 +1,7 @@
 #include "framework/capture/capture_internal.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <span>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "framework/capture/cryptomatte.h"
 #include "framework/capture/decode.h"
 #include "framework/capture/layer_roles.h"
+#include "framework/capture/role_file.h"
 #include "framework/capture/sample_means.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
@@ -92,32 +94,6 @@ void read_alpha(Image& color, bool is_opaque, CaptureHeader& header) {
             "\"opaque\" in capture.json, reads it as 1");
 }
 
-std::string window_text(const Window& window) {
-    return std::to_string(window.width()) + " x " + std::to_string(window.height()) + " px at (" +
-           std::to_string(window.min_x) + ", " + std::to_string(window.min_y) + ")";
-}
-
-/// A file of other windows covers another part of the picture only where it says so: by the main file's
-/// display window around its own data window. Else its pixels belong to a picture of another size.
-void require_one_picture(const std::string& role, const FrameFile& file, const FrameFile& main) {
-    const ExrPart& own = file.merged();
-    const ExrPart& picture = main.merged();
-    if (own.display_window == picture.display_window || own.data_window == picture.data_window) return;
-    throw Error(ExitCode::capture,
-                file.path().string() + ": the role '" + role + "' has a display window of " +
-                    window_text(own.display_window) + ", but that of " + main.path().string() + " is " +
-                    window_text(picture.display_window) +
-                    " (render both at one size; a crop keeps the whole picture's display window)");
-}
-
-std::string shape_fault(const std::string& role, const FrameFile& file, const FrameFile& main) {
-    const float own = file.merged().pixel_aspect, others = main.merged().pixel_aspect;
-    if (own == others) return "";
-    return role + " is read from a file with pixel aspect " + format_number(double(own)) +
-           ", color from one with " + format_number(double(others)) +
-           "; its pixels are taken as those of color (render both alike)";
-}
-
 }  // namespace
 
 CaptureReader::CaptureReader(const Sequence& sequence, std::vector<Profile> profiles, ReadLimits limits)
@@ -170,6 +146,7 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     else return;
     open.header.role_channels[role] =
         source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
+    find_others(open, role, source);
     open.roles[role] = std::move(source);
 }
 
@@ -206,13 +183,14 @@ void CaptureReader::find_roles(OpenFrame& open) const {
 
 CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
     OpenFrame open;
+    if (is_held_flat()) deep_layers = 1;
     open.main = open_file(sequence_.path_of(frame), "", deep_layers, open.header);
     for (const auto& [role, pattern] : sequence_.role_files) {
         auto& file = open.role_files[role];
         file = open_file(pattern.path(frame), role, deep_layers, open.header);
         require_one_picture(role, *file, *open.main);
-        if (std::string fault = shape_fault(role, *file, *open.main); !fault.empty())
-            open.header.warnings.push_back(std::move(fault));
+        std::ranges::move(role_file_faults(role, *file, *open.main),
+                          std::back_inserter(open.header.warnings));
     }
     const ExrPart& part = open.main->merged();
     CaptureHeader& header = open.header;
@@ -228,7 +206,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
     choose_layer(open);
     header.camera = sequence_.camera;
     header.camera.complete_from(camera_of_metadata(part, *open.profile, sequence_.camera));
-    for (std::string& fault : camera_faults(part.metadata, *open.profile, sequence_.camera))
+    for (std::string& fault : camera_faults(part, *open.profile, sequence_.camera))
         header.warnings.push_back(std::move(fault));
     header.lights = sequence_.lights ? *sequence_.lights : lights_of_metadata(part.metadata, header.path);
     find_roles(open);
@@ -280,6 +258,7 @@ void CaptureReader::read_motion(const OpenFrame& open, const std::string& role, 
         !std::filesystem::exists(before, unreadable))
         return;
     const FrameFile previous(before, limits_, sequence_.view);
+    if (previous.view() != open.main->view()) return;  // another camera
     const Camera camera = camera_of_metadata(previous.merged(), *open.profile, sequence_.camera);
     if (!knows_motion(header.camera, camera)) return;
     const Image depth = read_role(open, kDepthRole, nullptr, capture);
@@ -314,7 +293,11 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     const RoleSource& source = open.roles.at(name);
     const FrameFile& file = *source.file;
     if (source.from_cryptomatte) return read_cryptomatte_role(open, role.kind);
-    if (role.type == ComponentType::uint32) return read_ids(source, header.data_window, open.layer);
+    if (role.type == ComponentType::uint32) {
+        Image ids = read_ids(source, header.data_window, open.layer);
+        warn_of_others(open, name, ids, capture);
+        return ids;
+    }
     // A stored value beyond the data window is none: it gets the role's value after decoding, except where
     // decoding itself turns it into that.
     const float outside = role.kind == RoleKind::distance ? source.decoding.no_hit : role.outside;
@@ -326,6 +309,8 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     if (role.kind == RoleKind::distance || role.kind == RoleKind::motion)
         if (const NonFinitePixels found = find_non_finite(image, true, exr_threads()); found.nan > 0)
             capture.non_finite[name] = found;
+    warn_of_others(open, name, image, capture);
+    if (is_unit_in_doubt(open, name, image)) warn_of_unit(open, name, image, capture);
     if (std::string fault = range_fault(name, image, source.decoding); !fault.empty())
         capture.header.warnings.push_back(std::move(fault));
     if (source.decoding.is_mean) repair_means(image);
@@ -355,9 +340,11 @@ void CaptureReader::prefetch(const OpenFrame& open, std::span<const std::string>
         if (source.from_cryptomatte || !source.luminance.empty()) continue;
         const bool reads_uints = find_role(role)->type == ComponentType::uint32 &&
                                  source.file->type_of(source.channels[0][0]) == PixelType::uint32;
+        const ComponentType type = reads_uints ? ComponentType::uint32 : ComponentType::float32;
         for (const std::vector<std::string>& layer : source.channels)
-            requests[source.file].push_back(
-                {present_of(layer), reads_uints ? ComponentType::uint32 : ComponentType::float32});
+            requests[source.file].push_back({present_of(layer), type});
+        for (const FoundChannels& other : source.others)
+            requests[source.file].push_back({present_of(other[0]), type});
     }
     for (const auto& [file, wanted] : requests) file->prefetch(wanted);
 }

@@ -50,6 +50,8 @@ struct CaptureHeader {
     std::vector<std::string> layer_roles;  ///< "layer1:depth": what can be read of layers, front to back
     std::vector<std::string> roles;        ///< that can be read, sorted
     std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
+    /// Of roles that no document names the channels of: first channels of others that go by the role's names.
+    std::map<std::string, std::vector<std::string>> other_channels;
     /// Roles that the main file does not store as they are: from files of their own, luminance, Cryptomatte.
     std::set<std::string> derived_roles;
     std::vector<std::string> channels;   ///< of the file, in this view
@@ -163,6 +165,8 @@ private:
     void compare_profile(const ExrPart& part, const CaptureHeader& first, CaptureHeader& header) const;
     void compare_with_first(CaptureHeader& header, const Chromaticities& primaries) const;
     void compare_roles(CaptureHeader& header, std::span<const std::string> roles) const;
+    void compare_depths(CaptureHeader& header) const;
+    bool is_held_flat() const;
     OpenFrame open(int frame, int deep_layers = 1) const;
     const Profile& choose_profile(const ExrPart& part, CaptureHeader& header) const;
     void choose_layer(OpenFrame& open) const;
@@ -182,6 +186,13 @@ private:
     Image read_coverage(const OpenFrame& open, const std::string& role) const;
     void require_names(const OpenFrame& open, const Image& ids, std::span<const std::string> names) const;
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
+    void find_others(OpenFrame& open, const std::string& role, RoleSource& source) const;
+    void warn_of_others(const OpenFrame& open, const std::string& role, const Image& stored,
+                        Capture& capture) const;
+    bool is_guessed(const OpenFrame& open, const std::string& role) const;
+    bool is_unit_in_doubt(const OpenFrame& open, const std::string& role, const Image& stored) const;
+    void warn_of_unit(const OpenFrame& open, const std::string& role, const Image& stored,
+                      Capture& capture) const;
     void find_colors(OpenFrame& open) const;
     static void find_losses(OpenFrame& open);
     /// Unpacks what read_role will need of these roles.

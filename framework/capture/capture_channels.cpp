@@ -3,6 +3,7 @@
 
 #include "framework/base/error.h"
 #include "framework/capture/capture_internal.h"
+#include "framework/capture/channel_names.h"
 #include "framework/capture/encode_role.h"
 #include "framework/image/role.h"
 
@@ -12,8 +13,8 @@ namespace {
 
 /// Of deep samples: what has no mean.
 bool is_deep_depth(const std::string& channel) {
-    const std::string name = channel.substr(channel.rfind('.') + 1);
-    return name == "Z" || name == "ZBack";
+    const std::string name = split_channel_name(channel).component;
+    return name == "z" || name == "zback";
 }
 
 }  // namespace

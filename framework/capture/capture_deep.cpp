@@ -30,7 +30,8 @@ void CaptureReader::read_deep_layers(OpenFrame& open, std::span<const std::strin
                                      Capture& capture) const {
     DeepPart* const picture = deep_picture(open);
     if (!picture) return;
-    for (open.layer = 0; open.layer < picture->layers(); ++open.layer) {
+    const int layers = open.header.layer_roles.empty() ? 0 : picture->layers();
+    for (open.layer = 0; open.layer < layers; ++open.layer) {
         std::vector<std::string> deep = roles_of_layer(roles, open.layer);
         std::erase_if(deep, [&](const std::string& role) { return !is_deep(open, role); });
         Capture of_layer;  // what is said of motion and alpha is said of the whole picture

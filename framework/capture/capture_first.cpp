@@ -91,6 +91,24 @@ void CaptureReader::hold_to_first_of(const CaptureReader& other) {
         std::call_once(first_->once, [&] { other.decide(other.deciding_files(), *first_); });
 }
 
+/// Of a deep frame among flat ones only the whole picture is read, as of theirs.
+bool CaptureReader::is_held_flat() const {
+    const FirstFrame* const first = first_frame();
+    return first && first->header->layer_roles.empty();
+}
+
+void CaptureReader::compare_depths(CaptureHeader& header) const {
+    const FirstFrame* const first = first_frame();
+    const bool is_deep = !header.layer_roles.empty();
+    if (!first || is_deep != is_held_flat()) return;
+    const std::string path = first->header->path.string();
+    header.differences.push_back(
+        is_deep ? "it is deep and " + path + " is flat: its samples are read as one flat picture"
+                : "it is flat and " + path + " is deep: it has no layers behind its picture");
+    header.layer_roles.clear();
+    header.layer_count = 1;
+}
+
 std::string CaptureReader::decision(std::span<const std::string> roles) const {
     std::string text;
     for (std::size_t i = 0; i < sequence_.layers.size(); ++i) {
@@ -102,7 +120,8 @@ std::string CaptureReader::decision(std::span<const std::string> roles) const {
     const FirstFrame* const first = first_frame();
     if (!first) return text;
     const CaptureHeader& header = *first->header;
-    text = header.profile + "\n" + header.layer + "\n" + (first->has_alpha ? "alpha" : "opaque");
+    text = header.profile + "\n" + header.layer + "\n" + (first->has_alpha ? "alpha" : "opaque") +
+           (header.layer_roles.empty() ? "" : " deep");
     for (const float number : header.primaries) text += " " + format_number(double(number));
     for (const auto& [role, view] : first->views) text += "\n" + role + " in " + view;
     for (const auto& [role, source] : first->sources)
@@ -188,6 +207,7 @@ void CaptureReader::compare_profile(const ExrPart& part, const CaptureHeader& fi
 void CaptureReader::compare_with_first(CaptureHeader& header, const Chromaticities& primaries) const {
     const FirstFrame* const first = first_frame();
     if (!first) return;
+    compare_depths(header);
     const CaptureHeader& other = *first->header;
     const bool has_other_primaries = primaries != other.primaries;  // before they are replaced
     header.keeps_alpha = first->has_alpha && first->has_followers && !sequence_.alpha_is_opaque;

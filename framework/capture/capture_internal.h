@@ -18,7 +18,9 @@ struct CaptureReader::RoleSource {
     const FrameFile* file = nullptr;
     RoleDecoding decoding;
     FoundChannels channels;  // empty for luminance and Cryptomatte
-    std::string luminance;   // the Y channel that stands for color
+    /// Further channels that go by the role's names, where the file's names alone choose.
+    std::vector<FoundChannels> others{};
+    std::string luminance{};  // the Y channel that stands for color
     bool from_cryptomatte = false;
     StoredColors colors;  // of light
 };

@@ -60,7 +60,25 @@ Image scaled(const Image& image, const ChannelRole& role, const CaptureHeader& h
     return result;
 }
 
+std::string text_of(const Window& window) {
+    return std::to_string(window.width()) + " x " + std::to_string(window.height()) + " px at (" +
+           std::to_string(window.min_x) + ", " + std::to_string(window.min_y) + ")";
+}
+
 }  // namespace
+
+Window whole_picture(const CaptureHeader& header) {
+    const Window &a = header.display_window, &b = header.data_window;
+    return {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y), std::max(a.max_x, b.max_x),
+            std::max(a.max_y, b.max_y)};
+}
+
+std::string region_fault(const CaptureHeader& header, const Window& region) {
+    const Window within = intersection(region, whole_picture(header));
+    if (within == region) return "";
+    return "the region, " + text_of(region) + ", reaches beyond the picture, " +
+           text_of(whole_picture(header)) + "; " + text_of(within) + " of it are written";
+}
 
 Window intersection(const Window& a, const Window& b) {
     return {std::max(a.min_x, b.min_x), std::max(a.min_y, b.min_y), std::min(a.max_x, b.max_x),
@@ -88,7 +106,10 @@ void crop_capture(Capture& capture, const Window& window) {
     CaptureHeader& header = capture.header;
     const Window common = intersection(window, header.data_window);
     if (common.width() < 1 || common.height() < 1)
-        throw Error(ExitCode::capture, header.path.string() + ": the region has no pixel of the data window");
+        throw Error(ExitCode::capture, header.path.string() +
+                                           ": the region has no pixel of the data window (" +
+                                           text_of(window) + " against " + text_of(header.data_window) +
+                                           "; choose one within it)");
     if (common == header.data_window) return;
     for (auto& [name, image] : capture.images)
         image = place_in_window(std::move(image), header.data_window, common, 0);

@@ -1,6 +1,8 @@
 // A capture at another scale, or a part of it.
 #pragma once
 
+#include <string>
+
 #include "framework/capture/capture.h"
 
 namespace aftershade {
@@ -17,6 +19,12 @@ Window scaled_window(const Window& window, const Window& display, int divisor);
 /// The pixels of `window` that the data window covers; the display window stays. Throws
 /// Error(ExitCode::capture) where they have none in common.
 void crop_capture(Capture& capture, const Window& window);
+
+/// The display window and what the data window has beyond it.
+Window whole_picture(const CaptureHeader& header);
+
+/// That a region reaches beyond the whole picture, in a sentence with both; "" where it does not.
+std::string region_fault(const CaptureHeader& header, const Window& region);
 
 /// What two windows have in common; width or height 0 or below where that is nothing.
 Window intersection(const Window& a, const Window& b);

@@ -1,7 +1,9 @@
 #include "framework/capture/common_data.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "framework/capture/channel_names.h"
@@ -66,6 +68,46 @@ std::optional<FoundChannels> find_in_layer(const ExrPart& part, const CommonName
     return std::nullopt;
 }
 
+bool lies_in(const std::string& layer, const std::string& top) {
+    return top.empty() || layer == top || layer.starts_with(top + ".");
+}
+
+/// What a channel may be called by one of the role's words.
+struct Naming {
+    std::string layer, word;
+    std::size_t components = 0;  ///< index
+    bool is_rare = false;
+};
+
+std::vector<Naming> namings_of(const std::string& name, const CommonNames& names) {
+    std::vector<Naming> namings;
+    for (const Words* words : {&names.words, &names.rare_words})
+        for (const std::string& word : *words)
+            for (std::size_t i = 0; i < names.components.size(); ++i)
+                if (const std::string ending = joined_name(word, names.components[i][0]);
+                    name == ending || name.ends_with("." + ending))
+                    namings.push_back({name.substr(0, name.size() - std::min(name.size(), ending.size() + 1)),
+                                       word, i, words == &names.rare_words});
+    return namings;
+}
+
+/// The components beside a channel that is the first of them, in its own spelling where there is one.
+std::optional<FoundChannels> components_beside(const ExrPart& part, const std::string& first,
+                                               const Words& components) {
+    const std::string name = canonical_name(first);
+    const std::string head = name.substr(0, name.size() - components[0].size());
+    const std::string spelled = first.substr(0, first.find_last_of("._- ") + 1);  // npos + 1 is 0
+    std::vector<std::string> found = {first};
+    for (std::size_t i = 1; i < components.size(); ++i) {
+        std::string& component = found.emplace_back(channel_of(part, head + components[i]));
+        for (const ExrChannel& channel : part.channels)
+            if (canonical_name(channel.name) == head + components[i] && channel.name.starts_with(spelled))
+                component = channel.name;
+        if (component.empty()) return std::nullopt;
+    }
+    return FoundChannels{found};
+}
+
 /// In whichever layer they lie, if there is one such layer alone.
 std::optional<FoundChannels> find_anywhere(const ExrPart& part, const CommonNames& names) {
     std::set<std::string> layers;
@@ -104,6 +146,39 @@ std::optional<FoundChannels> find_common_data(const ExrPart& part, std::string_v
         at.resize(dot == std::string::npos ? 0 : dot);
     }
     return layer.empty() ? find_anywhere(part, *names) : std::nullopt;
+}
+
+std::vector<FoundChannels> find_all_common_data(const ExrPart& part, std::string_view role,
+                                                const std::string& layer, const std::string& color_channel) {
+    const auto names = std::ranges::find(common_names(), role, &CommonNames::role);
+    if (names == common_names().end()) return {};
+    const std::string top = canonical_name(layer);
+    const std::string of_color = canonical_name(split_channel_name(color_channel).layer);
+    std::vector<std::string> other_pictures;
+    for (const std::string& one : color_layers(part))
+        if (const std::string name = canonical_name(one); !name.empty() && name != of_color && name != top)
+            other_pictures.push_back(name);
+    const auto counts = [&](const Naming& naming) {
+        const auto is_of = [&](const std::string& picture) { return lies_in(naming.layer, picture); };
+        const bool is_of_place =
+            naming.word == "z" && !naming.layer.empty() && !channel_of(part, naming.layer + ".x").empty();
+        return lies_in(naming.layer, top) && !is_of_place && std::ranges::none_of(other_pictures, is_of) &&
+               (!naming.is_rare || naming.layer.empty() || naming.layer == of_color);
+    };
+    // Of one name in one layer the first of its usual components counts, in whichever spellings.
+    std::map<std::pair<std::string, std::string>, std::map<std::size_t, std::vector<FoundChannels>>> found;
+    for (const ExrChannel& channel : part.channels) {
+        if (is_tristimulus(part, channel.name)) continue;
+        for (const Naming& naming : namings_of(canonical_name(channel.name), *names))
+            if (const auto all = components_beside(part, channel.name, names->components[naming.components]);
+                all && counts(naming))
+                found[{naming.layer, naming.word}][naming.components].push_back(*all);
+    }
+    std::vector<FoundChannels> distinct;
+    for (const auto& [name, by_components] : found)
+        for (const FoundChannels& one : by_components.begin()->second)
+            if (std::ranges::find(distinct, one) == distinct.end()) distinct.push_back(one);
+    return distinct;
 }
 
 }  // namespace aftershade

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "framework/capture/found_channels.h"
 #include "framework/file/exr_file.h"
@@ -16,5 +17,10 @@ namespace aftershade {
 /// there is none, or several would do.
 std::optional<FoundChannels> find_common_data(const ExrPart& part, std::string_view role,
                                               const std::string& layer, const std::string& color_channel);
+
+/// All channels of the role under its usual names, in `layer` and below it: what find_common_data() chooses
+/// from, and what would do as well. Without those of layers that are another picture.
+std::vector<FoundChannels> find_all_common_data(const ExrPart& part, std::string_view role,
+                                                const std::string& layer, const std::string& color_channel);
 
 }  // namespace aftershade

@@ -125,6 +125,18 @@ std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::s
     return FoundChannels{*color_of_layer(part, *chosen)};
 }
 
+std::vector<FoundChannels> find_all_common_colors(const ExrPart& part) {
+    static const std::set<std::string> kNames = {"", "image", "combined", "composite", "rgba", "beauty"};
+    std::vector<FoundChannels> all;
+    for (const std::string& layer : color_layers(part)) {
+        if (!kNames.contains(canonical_name(layer))) continue;
+        std::vector<std::string> names = *color_of_layer(part, layer);
+        names.pop_back();
+        all.push_back({names});
+    }
+    return all;
+}
+
 std::string find_common_alpha(const ExrPart& part, const std::string& red) {
     const std::string layer = split_channel_name(red).layer;
     if (const std::string own = component_of(part, layer, "a"); !own.empty()) return own;

@@ -21,6 +21,9 @@ std::vector<std::string> color_layers(const ExrPart& part);
 /// there is none or several would do.
 std::optional<FoundChannels> find_common_color(const ExrPart& part, const std::string& layer);
 
+/// Red, green and blue of the file's own picture under each name that is usual for it, not below any layer.
+std::vector<FoundChannels> find_all_common_colors(const ExrPart& part);
+
 /// The alpha that belongs to a colour whose first channel is `red`: of its layer, else the file's only one,
 /// under one of the usual names (A, alpha, alpha.V); "" where there is none.
 std::string find_common_alpha(const ExrPart& part, const std::string& red);

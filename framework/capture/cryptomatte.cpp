@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
-#include <filesystem>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/diagnostics.h"
@@ -20,47 +17,13 @@
 #include "framework/capture/channel_names.h"
 #include "framework/capture/frame_file.h"
 #include "framework/file/exr_loss.h"
+#include "framework/file/object_manifest.h"
 
 namespace aftershade {
 
 namespace {
 
 constexpr int kMaxRankPairs = 50;  // two ranks to a set of four channels, which two digits count
-
-/// The text of the manifest beside the EXR file; nullopt where there is none. A name that leads out of the
-/// file's folder is not followed: files come from elsewhere. Where the EXR file is a link, as in a folder of
-/// links to a farm's storage, the manifest may stand beside what it leads to.
-std::optional<std::string> manifest_beside(const FrameFile& file, const std::optional<std::string>& name) {
-    namespace fs = std::filesystem;
-    constexpr std::uintmax_t kMaxBytes = 64 << 20;
-    if (!name || name->empty() || fs::path(*name).filename() != *name) return std::nullopt;
-    std::error_code failure;
-    const fs::path folder = file.path().parent_path();
-    std::string fault, fault_of_target = kNoSuchFile;
-    std::string text = read_file_below(folder, *name, kMaxBytes, fault);
-    if (!fault.empty() && fs::is_symlink(file.path(), failure))
-        text = read_file_below(fs::canonical(file.path(), failure).parent_path(), *name, kMaxBytes,
-                               fault_of_target);
-    if (fault.empty() || fault_of_target.empty()) return text;
-    if (fault == kNoSuchFile) return std::nullopt;
-    throw Error(ExitCode::capture, (folder / *name).string() + ", the Cryptomatte manifest of " +
-                                       file.path().filename().string() + ": " + fault);
-}
-
-/// A manifest, {"object": "hex", ...}. One that is damaged counts as none: it is only a help. An id that is
-/// none is the hash of the name.
-void read_manifest(const std::optional<std::string>& manifest, CryptomatteLayer& layer) {
-    const auto parsed = nlohmann::json::parse(manifest.value_or("{}"), nullptr, false);
-    if (!parsed.is_object()) return;
-    for (const auto& [name, hash] : parsed.items()) {
-        const std::string text = hash.is_string() ? hash.get<std::string>() : "";
-        std::uint32_t id = 0;
-        const auto end = std::from_chars(text.data(), text.data() + text.size(), id, 16);
-        const bool is_id = end.ec == std::errc() && end.ptr == text.data() + text.size() && id != 0;
-        layer.object_names.push_back(name);
-        layer.object_ids.push_back(is_id ? id : cryptomatte_hash(name));
-    }
-}
 
 using RankChannels = std::array<std::string, 4>;
 
@@ -155,19 +118,17 @@ std::uint32_t id_bits(const Image& ranks, std::size_t pixel, std::size_t rank) {
 }  // namespace
 
 std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file) {
-    constexpr std::string_view kHead = "cryptomatte/", kName = "/name";
     std::vector<CryptomatteLayer> layers;
     const ExrMetadata& metadata = file.merged().metadata;
-    for (const std::string& attribute : metadata.names()) {
-        if (!attribute.starts_with(kHead) || !attribute.ends_with(kName)) continue;
+    for (const std::string& key : cryptomatte_keys(metadata)) {
         CryptomatteLayer layer;
-        layer.name = metadata.text(attribute).value_or("");
+        layer.name = metadata.text(key + "/name").value_or("");
         layer.ranks = channels_of_ranks(file, layer.name);
         if (layer.ranks.empty()) continue;
-        const std::string base = attribute.substr(0, attribute.size() - kName.size());
-        const auto manifest = metadata.text(base + "/manifest");
-        const auto beside = metadata.text(base + "/manif_file");
-        read_manifest(manifest ? manifest : manifest_beside(file, beside), layer);
+        for (const ManifestEntry& entry : read_object_manifest(file.path(), metadata, key)) {
+            layer.object_names.push_back(entry.object);
+            layer.object_ids.push_back(entry.id ? *entry.id : cryptomatte_hash(entry.object));
+        }
         layers.push_back(std::move(layer));
     }
     return layers;
@@ -176,9 +137,8 @@ std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file) {
 std::vector<std::string> declared_cryptomattes(const FrameFile& file) {
     std::vector<std::string> names;
     const ExrMetadata& metadata = file.merged().metadata;
-    for (const std::string& attribute : metadata.names())
-        if (attribute.starts_with("cryptomatte/") && attribute.ends_with("/name"))
-            names.push_back(metadata.text(attribute).value_or(""));
+    for (const std::string& key : cryptomatte_keys(metadata))
+        names.push_back(metadata.text(key + "/name").value_or(""));
     return names;
 }
 

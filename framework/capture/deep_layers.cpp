@@ -15,8 +15,7 @@ struct DeepSample {
     double back = 0;
     double alpha = 1;
 
-    /// At one depth points come first, in the file's order, as OpenEXR and OpenImageIO put them over one
-    /// another; then opaque volumes, which hide all behind their front; then others.
+    /// At one depth points come first; then opaque volumes, which hide all behind their front; then others.
     int rank() const { return back <= front ? 0 : alpha >= 1 ? 1 : 2; }
     bool is_point() const { return rank() < 2; }
     double end() const { return is_point() ? front : back; }
@@ -64,7 +63,7 @@ public:
     void leave(double density) { density_ = --open_ == 0 ? 0 : std::max(0.0, density_ - density); }
     double seen() const { return seen_; }
     double left() const { return left_; }
-    void hide(double share) { left_ *= share; }
+    void leave_only(double share) { left_ *= share; }
 
 private:
     double at_ = 0, density_ = 0, seen_ = 0, left_ = 1;
@@ -79,6 +78,27 @@ double density_of(const DeepSample& sample) {
 double rate_of(const DeepSample& sample) {
     const double length = sample.back - sample.front;
     return sample.alpha > 0 ? sample.thickness() / (sample.alpha * length) : 1 / length;
+}
+
+/// What samples at one depth show of themselves, in `shares`; returns what they let through. Merged two at a
+/// time, in the file's order, as Kainz 2013, "Merging overlapping samples", has it: translucent ones add up
+/// their thickness, opaque ones hide these and are averaged.
+double merge_coincident(std::span<const DeepSample> samples, std::span<double> shares) {
+    std::size_t opaque = 0;
+    double thickness = 0, left = 1;
+    for (const DeepSample& sample : samples) {
+        opaque += sample.alpha >= 1 ? 1 : 0;
+        left *= 1 - sample.alpha;
+        if (sample.alpha < 1) thickness += sample.thickness();
+    }
+    std::size_t before = 0;  // opaque ones
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double alpha = samples[i].alpha;
+        if (opaque == 0) shares[i] = (alpha > 0 ? samples[i].thickness() / alpha : 1) * shown_of(thickness);
+        else if (alpha < 1) shares[i] = 0;
+        else shares[i] = std::pow(0.5, double(opaque - std::max<std::size_t>(before++, 1)));
+    }
+    return left;
 }
 
 /// The shares of one layer's samples, which are sorted by their front.
@@ -104,8 +124,16 @@ std::vector<double> shares_of(std::span<const DeepSample> samples) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         close_before(samples[i].front);
         if (samples[i].is_point()) {
-            shares[i] = medium.left();
-            medium.hide(1 - samples[i].alpha);
+            const auto is_other = [&](const DeepSample& sample) {
+                return sample.front != samples[i].front || sample.rank() != samples[i].rank();
+            };
+            const auto end = std::find_if(samples.begin() + std::ptrdiff_t(i), samples.end(), is_other);
+            const auto count = std::size_t(end - samples.begin()) - i;
+            const std::span<double> merged = std::span(shares).subspan(i, count);
+            const double left = merge_coincident(samples.subspan(i, count), merged);
+            for (double& share : merged) share *= medium.left();
+            medium.leave_only(left);
+            i += count - 1;
             continue;
         }
         shares[i] = medium.seen();  // until it closes

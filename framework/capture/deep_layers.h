@@ -40,12 +40,12 @@ struct DeepReduction {
 
 /// The layer of each sample and its share in it.
 ///
-/// Samples are sorted by depth; those at one depth keep their order. Those with an extent count as
-/// homogeneous volumes, which are mixed where they overlap as Kainz, "Interpreting OpenEXR Deep Pixels"
-/// (2013), says. A pixel is split where nothing lies between a depth and one more than 1 % further away.
-/// Where that gives more layers than there may be, neighbours are put together, each time those whose union
-/// moves the least light, in 1 / depth; of equals the furthest. Hidden samples are a layer, too: they move no
-/// light, so that the nearest of them stays by itself.
+/// Samples are sorted by depth, and those with an extent count as homogeneous volumes. What overlaps or lies
+/// at one depth is mixed as Kainz, "Interpreting OpenEXR Deep Pixels" (2013), says. A pixel is split where
+/// nothing lies between a depth and one more than 1 % further away. Where that gives more layers than there
+/// may be, neighbours are put together, each time those whose union moves the least light, in 1 / depth; of
+/// equals the furthest. Hidden samples are a layer, too: they move no light, so that the nearest of them
+/// stays by itself.
 class DeepLayers {
 public:
     static constexpr std::uint32_t kNoSample = 0xffffffff;

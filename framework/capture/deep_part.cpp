@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/capture/channel_names.h"
 
 namespace aftershade {
 
@@ -13,15 +14,22 @@ DeepPart::DeepPart(const ExrFile& file, int part, int layers) : file_(file), par
     alpha_ = channel_called("A");
 }
 
-/// By its full name, else in a layer.
+/// By its full name, else in a layer, else in another spelling.
 std::string DeepPart::channel_called(const std::string& name) const {
-    std::string found;
-    for (const ExrChannel& channel : file_.parts()[std::size_t(part_)].channels) {
-        if (channel.type == PixelType::uint32) continue;
-        if (channel.name == name) return name;
-        if (found.empty() && channel.name.ends_with("." + name)) found = channel.name;
-    }
-    return found;
+    const std::string canonical = canonical_name(name);
+    const auto fits = [&](const std::string& channel, int spelling) {
+        const std::string own = canonical_name(channel);
+        switch (spelling) {
+            case 0: return channel == name;
+            case 1: return channel.ends_with("." + name);
+            case 2: return own == canonical;
+            default: return own.ends_with("." + canonical);
+        }
+    };
+    for (const int spelling : {0, 1, 2, 3})
+        for (const ExrChannel& channel : file_.parts()[std::size_t(part_)].channels)
+            if (channel.type != PixelType::uint32 && fits(channel.name, spelling)) return channel.name;
+    return "";
 }
 
 int DeepPart::width() const {

@@ -7,6 +7,7 @@
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/capture/channel_names.h"
 #include "framework/capture/common_names.h"
 #include "framework/image/window.h"
 
@@ -38,7 +39,8 @@ std::string name_in_view(const std::string& name, const std::vector<std::string>
 
 bool holds_depth_alone(const ExrPart& part) {
     return std::all_of(part.channels.begin(), part.channels.end(), [](const ExrChannel& channel) {
-        return channel.name == "Z" || channel.name == "ZBack";
+        const std::string name = canonical_name(channel.name);
+        return name == "z" || name == "zback";
     });
 }
 

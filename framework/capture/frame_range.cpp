@@ -192,7 +192,13 @@ std::optional<int> FramePattern::number_in(std::string_view name) const {
     if (!has_frame() || name.size() <= fixed) return std::nullopt;
     const std::size_t digits = name.size() - fixed;
     if (name.substr(0, start_) != std::string_view(text_).substr(0, start_)) return std::nullopt;
-    if (name.substr(start_ + digits) != std::string_view(text_).substr(start_ + length_)) return std::nullopt;
+    const std::string_view end = name.substr(start_ + digits);
+    const std::string_view own_end = std::string_view(text_).substr(start_ + length_);
+    // Of the extension, its case says nothing.
+    const std::size_t dot = std::min(own_end.rfind('.'), own_end.size());
+    if (end.substr(0, dot) != own_end.substr(0, dot) ||
+        lower_case(end.substr(dot)) != lower_case(own_end.substr(dot)))
+        return std::nullopt;
     return parse_int(name.substr(start_, digits));
 }
 

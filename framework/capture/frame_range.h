@@ -40,7 +40,7 @@ public:
     bool has_frame() const { return length_ > 0; }
     const std::string& text() const { return text_; }
     std::string path(int frame) const;
-    /// The file of `frame` has this name from now on, whose number is padded in another way.
+    /// The file of `frame` has this name from now on, which is padded or spelled in another way.
     void name_otherwise(int frame, std::string name) {
         other_names_.insert_or_assign(frame, std::move(name));
     }
@@ -48,7 +48,8 @@ public:
     std::string with(std::string_view number) const;
     /// The frame number in `name` if the pattern fits it.
     std::optional<int> match(std::string_view name) const;
-    /// The same, however the number is padded: "f_####.exr" fits "f_12.exr" and "f_-0001.exr".
+    /// The same, however the number is padded and in whichever case the extension is: "f_####.exr" fits
+    /// "f_12.exr", "f_-0001.exr" and "f_0002.EXR".
     std::optional<int> number_in(std::string_view name) const;
 
 private:

@@ -32,8 +32,9 @@ std::vector<std::string> paths_beside(const FramePattern& pattern) {
 }
 
 /// A sequence is its numbers: a frame whose own file is not there is read from the one whose number is padded
-/// in another way (998 to 1001, -0001). Throws Error(ExitCode::capture) where there are two of these, or
-/// where `padding_decides` is false and two files have one number.
+/// in another way (998 to 1001, -0001), or whose extension is in another case. Throws
+/// Error(ExitCode::capture) where there are two of these, or where `padding_decides` is false and two files
+/// have one number.
 FramePattern pattern_on_disk(FramePattern pattern, bool padding_decides) {
     std::map<int, std::vector<std::string>> paths;
     for (const std::string& path : paths_beside(pattern))
@@ -152,7 +153,12 @@ std::size_t begin_of_number(const std::string& name, std::size_t last_digit) {
 /// Files of one sequence: the marks that most of their numbers need, and how many they are.
 struct FolderSequence {
     std::map<std::size_t, int> digits;
+    std::map<std::string, int> extensions;
     int count = 0;
+
+    std::string extension() const {
+        return std::ranges::max_element(extensions, {}, [](const auto& one) { return one.second; })->first;
+    }
 };
 
 /// The pattern that most *.exr files of a folder share: their names with the last group of digits left open.
@@ -167,7 +173,10 @@ FramePattern pattern_of_folder(const fs::path& folder, const std::string& argume
             name.starts_with('.'))
             continue;
         const std::size_t first = begin_of_number(name, last);
-        FolderSequence& found = sequences[{name.substr(0, first), name.substr(last + 1)}];
+        const std::string extension = entry.path().extension().string();
+        const std::string end = name.substr(last + 1, name.size() - last - 1 - extension.size());
+        FolderSequence& found = sequences[{name.substr(0, first), end}];
+        ++found.extensions[extension];
         ++found.count;
         ++found.digits[last + 1 - first];
     }
@@ -176,19 +185,19 @@ FramePattern pattern_of_folder(const fs::path& folder, const std::string& argume
         std::ranges::max_element(sequences, {}, [](const auto& one) { return one.second.count; });
     // The fewest digits pad no number beyond what it has, but for numbers that are padded in several ways.
     const std::size_t width = most->second.digits.begin()->first;
-    const std::string text =
-        (folder / (most->first.first + (width == 1 ? "%d" : std::string(width, '#')) + most->first.second))
-            .string();
+    const std::string text = (folder / (most->first.first + (width == 1 ? "%d" : std::string(width, '#')) +
+                                        most->first.second + most->second.extension()))
+                                 .string();
     if (std::ranges::count(sequences, most->second.count, [](const auto& one) { return one.second.count; }) >
         1)
         throw Error(ExitCode::capture,
                     folder.string() + ": holds several sequences; name one by its pattern, such as " + text);
     if (sequences.size() > 1) {
         const auto other = sequences.begin() == most ? std::next(most) : sequences.begin();
-        diagnostics.warning({argument}, "only " + fs::path(text).filename().string() +
-                                            " of the folder is read, not " + other->first.first +
-                                            std::string(other->second.digits.begin()->first, '#') +
-                                            other->first.second + " (name a pattern to choose)");
+        diagnostics.warning(
+            {argument}, "only " + fs::path(text).filename().string() + " of the folder is read, not " +
+                            other->first.first + std::string(other->second.digits.begin()->first, '#') +
+                            other->first.second + other->second.extension() + " (name a pattern to choose)");
     }
     return pattern_on_disk(FramePattern(text), false);
 }
@@ -202,6 +211,16 @@ std::vector<int> whole_frames(const std::vector<int>& files, int subframes) {
     for (const auto& [frame, count] : counts)
         if (count == subframes) frames.push_back(frame);
     return frames;
+}
+
+/// " (there is f.EXR)": of the same name in another case; "" for none.
+std::string other_spelling_of(const fs::path& file) {
+    std::error_code failure;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    for (const auto& entry : fs::directory_iterator(folder, failure))
+        if (lower_case(entry.path().filename().string()) == lower_case(file.filename().string()))
+            return " (there is " + entry.path().filename().string() + ")";
+    return "";
 }
 
 void find_missing_range(Sequence& sequence, const std::string& argument) {
@@ -219,7 +238,7 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
     }
     const fs::path file = sequence.files.text();
     if (std::error_code failure; !fs::exists(file, failure))
-        throw Error(ExitCode::capture, file.string() + ": no such file");
+        throw Error(ExitCode::capture, file.string() + ": no such file" + other_spelling_of(file));
     sequence.frames = {frame_in_name(file.stem().string()).value_or(1)};
 }
 

@@ -39,12 +39,15 @@ glm::dmat4 matrix_of(const Rows& rows) {
 }
 
 /// As it acts on column vectors. EXR's act on row vectors, so GLM's columns are its rows.
-std::optional<glm::dmat4> stored_matrix(const ExrMetadata& metadata, const char* name) {
+std::optional<glm::dmat4> stored_matrix(const ExrMetadata& metadata, const char* name, std::string& damage) {
     const auto value = metadata.value(name);
     const auto* stored = value ? std::get_if<std::vector<float>>(&*value) : nullptr;
     if (!stored || stored->size() != 16) return std::nullopt;
-    if (!std::all_of(stored->begin(), stored->end(), [](float v) { return std::isfinite(v); }))
+    const bool is_finite = std::ranges::all_of(*stored, [](float v) { return std::isfinite(v); });
+    if (!is_finite || std::ranges::all_of(*stored, [](float v) { return v == 0; })) {
+        damage = std::string(name) + (is_finite ? " is 0 everywhere" : " has values that are not finite");
         return std::nullopt;
+    }
     glm::dmat4 matrix;
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) matrix[column][row] = (*stored)[std::size_t(column * 4 + row)];
@@ -186,17 +189,31 @@ std::optional<glm::dmat4> ndc_of_lens(const glm::dmat4& camera_from_world, const
     return matrix_of({slope * view[0], slope * aspect * view[1], -view[2], -view[2]});
 }
 
+/// Rows of x, y and the divisor that no point would be lost by.
+bool spans_picture(const glm::dmat4& ndc_from_world) {
+    const Rows rows = rows_of(ndc_from_world);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(rows[0]), glm::dvec3(rows[1]));
+    const double size = glm::length(glm::dvec3(rows[0])) * glm::length(glm::dvec3(rows[1]));
+    return glm::length(normal) > kTolerance * size && glm::length(rows[3]) > 0;
+}
+
 StoredMatrices of_version_2(const ExrPart& part) {
     StoredMatrices result;
-    if (const auto stored = stored_matrix(part.metadata, "worldToCamera"))
-        result.camera_from_world = camera_matrix(looking_back({*stored, 1, false}));
-    if (const auto stored = stored_matrix(part.metadata, "worldToNDC")) {
-        Rows rows = rows_of(*stored);
+    std::string& damage = result.fault;
+    const auto view = stored_matrix(part.metadata, "worldToCamera", damage);
+    const auto ndc = stored_matrix(part.metadata, "worldToNDC", damage);
+    if (view && (!is_affine(*view) || !(std::abs(glm::determinant(glm::dmat3(*view))) > 0)))
+        damage = "worldToCamera is singular";
+    else if (view) result.camera_from_world = camera_matrix(looking_back({*view, 1, false}));
+    if (ndc && !spans_picture(*ndc)) damage = "worldToNDC is singular";
+    else if (ndc) {
+        Rows rows = rows_of(*ndc);
         rows[0] = 2.0 * rows[0] - rows[3];
         rows[1] = rows[3] - 2.0 * rows[1];
         result.ndc_from_world = camera_matrix(matrix_of(rows));
     }
-    result.found = "by OpenEXR's definition";
+    if (result.camera_from_world || result.ndc_from_world) result.found = "by OpenEXR's definition";
+    result.contradiction = result.fault;
     return result;
 }
 
@@ -262,12 +279,14 @@ std::optional<Axes> axes_of_transform(const glm::dmat4& stored, const ExrMetadat
 /// V-Ray stores where the camera is in the world, and no projection.
 StoredMatrices of_camera_transform(const ExrPart& part, const Camera& lens) {
     StoredMatrices result;
-    const auto stored = stored_matrix(part.metadata, "cameraTransform");
+    const auto stored = stored_matrix(part.metadata, "cameraTransform", result.fault);
+    result.contradiction = result.fault;
     if (!stored) return result;
     if (!is_affine(*stored) || !is_rigid(*stored) || glm::determinant(glm::dmat3(*stored)) <= 0) {
         result.fault =
             "cameraTransform is not a camera's: its axes are not right-handed, at right angles and of "
             "one length";
+        result.contradiction = result.fault;
         return result;
     }
     const auto axes = axes_of_transform(*stored, part.metadata);
@@ -297,20 +316,23 @@ double ahead_by_handedness(const View& view) {
 StoredMatrices read_matrices(const ExrPart& part, const Camera& lens) {
     if (part.metadata.number(kVersionAttribute) == kOpenExrVersion) return of_version_2(part);
     StoredMatrices result;
-    const auto stored = stored_matrix(part.metadata, "worldToCamera");
-    if (!stored) return of_camera_transform(part, lens);
-    const std::vector<View> views = views_of(*stored);
-    if (views.empty()) {
+    const auto stored = stored_matrix(part.metadata, "worldToCamera", result.fault);
+    if (!stored && result.fault.empty()) return of_camera_transform(part, lens);
+    const std::vector<View> views = stored ? views_of(*stored) : std::vector<View>{};
+    if (stored && views.empty())
         result.fault = "worldToCamera is not a camera's: its axes are not at right angles and of one length";
-        return result;
-    }
+    result.contradiction = result.fault;
+    if (views.empty()) return result;
     std::optional<Fit> fit;
     for (const View& view : views)
         for (const char* name : {"worldToNDC", "worldToScreen"}) {
-            const auto ndc = fit ? std::nullopt : stored_matrix(part.metadata, name);
             std::string fault;
+            const auto ndc = fit ? std::nullopt : stored_matrix(part.metadata, name, fault);
             if (ndc) fit = fit_of(name, *ndc, view, part, lens, fault);
             if (result.fault.empty()) result.fault = fault;
+            // Some renderers write it a second time, for want of a projection.
+            if (!fit && !(ndc && nearly_equal(*ndc, *stored)) && result.contradiction.empty())
+                result.contradiction = fault;
         }
     View view = fit ? fit->view : views.front();
     if (view.ahead == 0) view.ahead = ahead_by_handedness(view);
@@ -322,6 +344,7 @@ StoredMatrices read_matrices(const ExrPart& part, const Camera& lens) {
         result.ndc_from_world = camera_matrix(fit->ndc_from_world);
         result.found += "; " + fit->found;
         result.fault.clear();
+        result.contradiction.clear();
     } else if (const auto ndc = ndc_of_lens(camera_from_world, part, lens)) {
         result.ndc_from_world = camera_matrix(*ndc);
         result.found += "; projection of the lens";

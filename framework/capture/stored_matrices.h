@@ -18,6 +18,8 @@ struct StoredMatrices {
     std::optional<CameraMatrix> ndc_from_world;
     std::string found;  ///< "worldToCamera, +z ahead; worldToNDC, 0 to 1 with y down"; "" for no matrix
     std::string fault;  ///< why a matrix of the header was not taken; "" where each was
+    /// The same where the header contradicts itself or is damaged, and not only means something else.
+    std::string contradiction;
 };
 
 /// Reads worldToCamera, and worldToNDC or worldToScreen (Arnold 7.1 and later); without worldToCamera V-Ray's

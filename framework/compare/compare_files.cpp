@@ -98,12 +98,32 @@ private:
                 "the same names are other views: the first is '{}' in the reference, '{}' in the test "
                 "image",
                 ours.first_view, theirs.first_view));
+        check_objects();
         const auto is_color = [](const LayerInfo& layer) { return is_perceptual(layer.role); };
         if (reference_.format() != test_.format() || ours.colors == theirs.colors ||
             std::ranges::none_of(reference_.layers(), is_color))
             return;
         warn(fmt::format("the same numbers are other colours: {} in the reference, {} in the test image",
                          ours.colors, theirs.colors));
+    }
+
+    /// Equal ids in the pixels are other objects where the manifests say so.
+    void check_objects() {
+        for (const auto& [matte, ours] : reference_.traits().objects) {
+            const auto theirs = test_.traits().objects.find(matte);
+            if (theirs == test_.traits().objects.end()) continue;
+            std::string first;
+            int renamed = 0;
+            for (const auto& [id, names] : ours) {
+                const auto other = theirs->second.find(id);
+                if (other == theirs->second.end() || other->second == names || renamed++ > 0) continue;
+                first = fmt::format("{:08x} is '{}' in the reference, '{}' in the test image", id,
+                                    *names.begin(), *other->second.begin());
+            }
+            if (renamed > 0)
+                warn(fmt::format("the manifests of the Cryptomatte '{}' give {} other names: {}", matte,
+                                 renamed == 1 ? "one id" : fmt::format("{} ids", renamed), first));
+        }
     }
 
     /// An area that is nowhere would be left out of nothing, unseen.

@@ -15,6 +15,7 @@
 #include "framework/base/error.h"
 #include "framework/base/lfs_pointer.h"
 #include "framework/file/hdr_file.h"
+#include "framework/file/object_manifest.h"
 #include "framework/file/png_file.h"
 #include "framework/file/stored_colors.h"
 
@@ -32,6 +33,7 @@ struct LayerFile::Impl {
     std::vector<std::string> whole_names;  // its channels
 
     void open_exr(ExrFile file);
+    void read_manifests(const ExrMetadata& metadata);
     void open_flat(Image image, LayerRole color);
     void open_png();
     int part_of(const LayerInfo& layer) const;
@@ -89,6 +91,7 @@ void LayerFile::Impl::open_exr(ExrFile file) {
         if (parts[i].has_smaller_levels)
             traits.left_out.push_back("smaller levels of the tiles" +
                                       (name.empty() ? "" : " of part '" + name + "'"));
+        read_manifests(parts[i].metadata);
         std::vector<ExrChannel> channels = parts[i].channels;
         // As colours too, so that it can be held against a file of R, G and B. The converter reads first
         // parts.
@@ -106,6 +109,16 @@ void LayerFile::Impl::open_exr(ExrFile file) {
     const int hero = color == layers.end() ? 0 : part_of(*color);
     const StoredColors stored = stored_colors(parts.front().metadata, parts[std::size_t(hero)].metadata);
     traits.colors = stored.meaning();
+}
+
+void LayerFile::Impl::read_manifests(const ExrMetadata& metadata) {
+    for (const std::string& key : cryptomatte_keys(metadata)) try {
+            for (const ManifestEntry& entry : read_object_manifest(path, metadata, key))
+                if (entry.id)
+                    traits.objects[metadata.text(key + "/name").value_or("")][*entry.id].insert(entry.object);
+        } catch (const Error& error) {
+            traits.left_out.push_back(std::string("names of objects (") + error.what() + ")");
+        }
 }
 
 void LayerFile::Impl::open_flat(Image image, LayerRole color) {

@@ -1,8 +1,11 @@
 // A picture file of any kind that is compared, as layers.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,7 +20,9 @@ struct FileTraits {
     float pixel_aspect = 1;
     std::string first_view;  ///< whose layers have no view in their names; "" where the file names none
     std::vector<std::string> left_out;  ///< what no layer has: "smaller levels of the tiles of part 'a'"
-    std::vector<std::string> notes;     ///< how colours were read, where it is not as they are stored
+    /// By the name of a Cryptomatte and an id: the objects that its manifest calls by the id.
+    std::map<std::string, std::map<std::uint32_t, std::set<std::string>>> objects;
+    std::vector<std::string> notes;  ///< how colours were read, where it is not as they are stored
 };
 
 /// OpenEXR, PNG or Radiance, recognised by its first bytes. OpenEXR: every part, level 0 of tiles; samples of

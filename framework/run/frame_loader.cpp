@@ -21,22 +21,23 @@ void add_missing(std::vector<std::string>& list, const std::vector<std::string>&
         if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
-/// The region of the display window at full scale, with what is rendered around it, in the coordinates of the
-/// windows.
+/// The region at full scale in the coordinates of the windows.
+Window region_of(const RunOptions& run, const Window& display, int margin = 0) {
+    return {display.min_x + run.region->min_x - margin, display.min_y + run.region->min_y - margin,
+            display.min_x + run.region->max_x + margin, display.min_y + run.region->max_y + margin};
+}
+
+/// With what is rendered around it.
 Window region_with_margin(const RunOptions& run, const std::optional<RegionNeeds>& needs,
                           const CaptureHeader& header) {
     const Window& display = header.display_window;
-    const auto grown = [&](int margin) -> Window {
-        return {display.min_x + run.region->min_x - margin, display.min_y + run.region->min_y - margin,
-                display.min_x + run.region->max_x + margin, display.min_y + run.region->max_y + margin};
-    };
-    if (run.region_margin_px) return grown(*run.region_margin_px);
-    const Window common = intersection(grown(0), header.data_window);
+    if (run.region_margin_px) return region_of(run, display, *run.region_margin_px);
+    const Window region = region_of(run, display), common = intersection(region, header.data_window);
     // Without a pixel to write, it is left to crop_capture() to say so.
-    if (common.width() < 1 || common.height() < 1) return grown(0);
+    if (common.width() < 1 || common.height() < 1) return region;
     if (!needs) return header.data_window;
     const int divisor = run.scale_divisor;
-    const Window part = window_with_needs(scaled_window(grown(0), display, divisor), *needs,
+    const Window part = window_with_needs(scaled_window(region, display, divisor), *needs,
                                           scaled_window(header.data_window, display, divisor));
     return {display.min_x + (part.min_x - display.min_x) * divisor,
             display.min_y + (part.min_y - display.min_y) * divisor,
@@ -112,7 +113,9 @@ void FrameLoader::place(Capture& capture, int file) const {
     if (run_.region) {
         const PixelStretch stretch = SquareSteps(pipeline_, capture.header.pixel_aspect).stretch();
         const auto needs = region_needs_ ? in_stored_pixels(*region_needs_, stretch) : std::nullopt;
+        std::string fault = region_fault(capture.header, region_of(run_, capture.header.display_window));
         crop_capture(capture, region_with_margin(run_, needs, capture.header));
+        if (!fault.empty()) capture.header.warnings.push_back(std::move(fault));
     }
     scale_capture(capture, run_.scale_divisor);
     const int subframe = (file % sequence_.subframes + sequence_.subframes) % sequence_.subframes;

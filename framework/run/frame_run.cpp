@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/capture/capture_window.h"
 #include "framework/image/window.h"
 #include "framework/render/trace.h"
@@ -22,6 +23,11 @@ auto timed_read(RunReport& report, const Read& read) {
     auto captures = read();
     report.read_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     return captures;
+}
+
+void add_new(std::vector<std::string>& list, const std::vector<std::string>& items) {
+    for (const std::string& item : items)
+        if (std::ranges::find(list, item) == list.end()) list.push_back(item);
 }
 
 }  // namespace
@@ -67,12 +73,20 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
     FrameResult result;
     std::vector<graph::PassTime> times;
     std::string history_reset;
-    std::vector<std::string> messages;
+    std::vector<std::string> messages, said, differences;
     for (int subframe = 0; subframe < inputs.subframe_count; ++subframe) {
         current = timed_read(report, [&] { return loader_.take(index, subframe); });
         if (subframe == inputs.subframe_count / 2) centre = current;
         if (subframe == 0 && observer.frame_started) observer.frame_started(*current);
         meet_non_finite(*current, report, observer);
+        const CaptureHeader& header = current->header;
+        std::vector<std::string> news = header.differences;
+        // Those of the first sub-frame are told as the frame starts.
+        for (const std::string& warning : header.warnings)
+            if (subframe > 0 && std::ranges::find(said, warning) == said.end()) news.push_back(warning);
+        for (const std::string& text : news) add_new(differences, {header.path.string() + ": " + text});
+        add_new(said, header.warnings);
+        add_new(said, header.differences);
         inputs.capture = current.get();
         inputs.centre = centre.get();
         inputs.subframe = subframe;
@@ -85,8 +99,12 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
     result.times = std::move(times);
     result.messages = std::move(messages);
     result.history_reset = std::move(history_reset);
-    return finished(std::move(centre), std::move(result));
+    Rendered rendered = finished(std::move(centre), std::move(result));
+    rendered.message = joined(said, "; ", "; ");
+    rendered.differences = std::move(differences);
+    return rendered;
 }
+
 /// Before the effects see it, and before any history does.
 void FrameRun::meet_non_finite(const Capture& capture, RunReport& report, const RunObserver& observer) const {
     if (capture.non_finite.empty()) return;
@@ -108,12 +126,16 @@ FrameRun::Rendered FrameRun::finished(std::shared_ptr<const Capture> capture, Fr
                     image.height() == capture->header.data_window.height())
                     image = place_in_window(std::move(image), capture->header.data_window,
                                             part->header.data_window, 0);
-        result.region = region;
+        result.region = intersection(region, whole_picture(capture->header));
         capture = std::move(part);
     }
     const TraceScope scan(run_.trace, "scan", "frame " + std::to_string(capture->header.frame));
     auto outputs = apply_nan_policy(run_.on_nan, result);
-    return {std::move(capture), std::make_shared<const FrameResult>(std::move(result)), std::move(outputs)};
+    return {std::move(capture),
+            std::make_shared<const FrameResult>(std::move(result)),
+            std::move(outputs),
+            {},
+            {}};
 }
 
 }  // namespace aftershade

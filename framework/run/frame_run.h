@@ -23,6 +23,9 @@ public:
         std::shared_ptr<const Capture> capture;
         std::shared_ptr<const FrameResult> result;
         std::vector<NonFiniteOutput> non_finite;
+        std::vector<std::string>
+            differences;      ///< from the first frame, of all sub-frames, each with its path
+        std::string message;  ///< warnings and differences, for reports
     };
 
     /// While the frame is read: builds its graph by what its header says, if that is enough. Faults are left

@@ -95,7 +95,7 @@ Written write_frame(const RunSetup& setup, const OutputOptions& outputs, const F
 struct PendingWrite {
     int frame = 0;
     std::future<Written> files{};
-    std::string differences{};  ///< from the first frame
+    std::string message{};  ///< for reports
 };
 
 std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOptions& outputs) {
@@ -236,9 +236,7 @@ private:
         if (run.trace) trace_frame(*run.trace, number, begin, frame.result->times);
         report_result(frame.capture->header, *frame.result, !any_rendered_, run, observer_);
         any_rendered_ = true;
-        if (observer_.frame_differs)
-            for (const std::string& difference : frame.capture->header.differences)
-                observer_.frame_differs(frame.capture->header.path.string() + ": " + difference);
+        if (observer_.frame_differs) std::ranges::for_each(frame.differences, observer_.frame_differs);
         for (const ObjectSighting& sighting : loader_.objects().take_sightings())
             if (observer_.object_seen) observer_.object_seen(sighting);
         add_times(report_.passes, frame.result->times);
@@ -256,8 +254,7 @@ private:
                 setup.hooks.frame_written(number, written.files.paths, milliseconds_since(begin) / 1000);
             return written;
         };
-        pending_ = {number, std::async(std::launch::async, write),
-                    joined(frame.capture->header.differences, "; ", "; ")};
+        pending_ = {number, std::async(std::launch::async, write), frame.message};
     }
 
     /// Waits for the files of the frame before, if there is one, and reports them.
@@ -270,7 +267,7 @@ private:
         if (!written.files.warnings.empty()) note_non_finite(pending_.frame, report_);
         if (observer_.non_finite) std::ranges::for_each(written.files.warnings, observer_.non_finite);
         say_cut(written.files);
-        outcomes_.done(pending_.frame, written.files.paths, pending_.differences);
+        outcomes_.done(pending_.frame, written.files.paths, pending_.message);
     }
 
     /// Once a run.

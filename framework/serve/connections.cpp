@@ -25,8 +25,9 @@ constexpr int kMostAccepted = 64;
 constexpr std::size_t kMostStrangers = 96;
 
 Error system_error(int port, const char* what) {
-    return Error(ExitCode::usage, "--port " + std::to_string(port) + ": " + what + " at 127.0.0.1: " +
-                                      std::strerror(errno) + " (leave --port out for a free one)");
+    return Error(ExitCode::usage,
+                 "--port " + std::to_string(port) + ": " + what + " at 127.0.0.1: " + std::strerror(errno) +
+                     (errno == EADDRINUSE || errno == EACCES ? " (leave --port out for a free one)" : ""));
 }
 
 }  // namespace
@@ -299,7 +300,7 @@ void Connections::work(const Handlers& handlers) {
         try {
             handlers.work(work.request, reply_to);
         } catch (const std::exception& error) {
-            reply_to(error_response(500, error.what()));
+            reply_to(fault_response(error));
         }
     }
 }

@@ -92,7 +92,7 @@ Response answer_or_fault(const DrawRequest& request, Looks& looks, PictureMaker&
     } catch (const Error& error) {
         return error_response(is_of_documents(error.exit_code()) ? 400 : 500, error.what());
     } catch (const std::exception& error) {
-        return error_response(500, error.what());
+        return fault_response(error);
     }
 }
 

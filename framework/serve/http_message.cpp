@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/base/error.h"
 #include "framework/base/text.h"
 
 namespace aftershade::serve {
@@ -132,6 +133,12 @@ Response error_response(int status, const std::string& message) {
     const nlohmann::json json = {{"error", message}};
     constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
     return {status, "application/json", json.dump(-1, ' ', false, kReplace)};
+}
+
+Response fault_response(const std::exception& error) {
+    if (dynamic_cast<const Error*>(&error)) return error_response(500, error.what());
+    return error_response(
+        500, std::string("a fault of the program itself: ") + error.what() + "; please report it");
 }
 
 std::string response_bytes(const Response& response, bool is_kept) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <optional>
 #include <string>
@@ -37,6 +38,8 @@ struct Response {
 Response json_response(const nlohmann::ordered_json& json);
 /// {"error": message}
 Response error_response(int status, const std::string& message);
+/// Code 500: the message of an Error; of any other exception that it is a fault of the program.
+Response fault_response(const std::exception& error);
 
 /// With the headers that every answer has: no sniffing, no store, no framing, no scripts but the page's own.
 std::string response_bytes(const Response& response, bool is_kept = false);

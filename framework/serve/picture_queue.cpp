@@ -94,7 +94,7 @@ Response PictureQueue::answer(const DrawRequest& request) {
             listener_.given_up(request, {reason, end.step});
             return error_response(409, reason);
         } catch (const std::exception& error) {
-            return error_response(500, error.what());
+            return fault_response(error);
         }
     }
 }

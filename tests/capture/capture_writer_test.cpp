@@ -56,7 +56,7 @@ Capture make_capture() {
         for (int x = 0; x < kWidth; ++x) ids.uint_at(x, y, 0) = std::uint32_t(x * 100 + y);
     capture.images["object_id"] = std::move(ids);
     Camera& camera = header.camera;
-    camera.set("focal_length", 35);
+    camera.set("focal_length", 36);
     camera.set("sensor_width", 36);
     camera.set("focus_distance", 4.5);
     camera.set("f_number", 2.5);

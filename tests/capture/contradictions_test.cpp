@@ -83,8 +83,7 @@ TEST(Contradiction, OfACamerasAttributeThatIsNoLengthIsAWarning) {
     const TemporaryFolder folder;
     const auto faults = [&](const std::map<std::string, ExrValue>& attributes, const Camera& known = {}) {
         write_channels(folder / "f.exr", 1, {{"R", {0}}}, attributes);
-        return joined(
-            camera_faults(ExrFile(folder / "f.exr").parts()[0].metadata, profile_of_roles(""), known));
+        return joined(camera_faults(ExrFile(folder / "f.exr").parts()[0], profile_of_roles(""), known));
     };
     EXPECT_EQ(faults({{"focus", 4.0f}, {"aperture", 2.8f}, {"nominalFocalLength", 0.0f}}), "");
     EXPECT_NE(faults({{"focus", -4.0f}})

@@ -122,6 +122,24 @@ TEST(Sequence, OfAFolderTakesExtensionsInCapitals) {
     EXPECT_EQ(opened(folder.path().string()).path_of(2), folder / "A_0002.EXR");
 }
 
+TEST(Sequence, IsItsNumbersInWhicheverCaseTheExtensionIs) {
+    const TemporaryFolder folder;
+    for (const char* name : {"f_0001.exr", "f_0002.EXR", "f_0003.Exr", "F_0004.exr", "f_0005.png"})
+        write_text(folder / name, "");
+    const Sequence sequence = opened((folder / "f_####.exr").string());
+    EXPECT_EQ(sequence.frames, (Frames{1, 2, 3}));
+    EXPECT_EQ(sequence.path_of(2), folder / "f_0002.EXR");
+    EXPECT_EQ(sequence.path_of(3), folder / "f_0003.Exr");
+    std::filesystem::remove(folder / "F_0004.exr");
+    EXPECT_EQ(opened(folder.path().string()).frames, (Frames{1, 2, 3}));
+    const std::string message = capture_error([&] { opened((folder / "f_0002.exr").string()); });
+    EXPECT_NE(message.find("no such file (there is f_0002.EXR)"), std::string::npos) << message;
+    write_text(folder / "f_0002.exr", "");
+    EXPECT_EQ(opened((folder / "f_####.exr").string()).path_of(2), folder / "f_0002.exr");
+    const std::string both = capture_error([&] { opened(folder.path().string()); });
+    EXPECT_NE(both.find("frame 2 is both"), std::string::npos) << both;
+}
+
 TEST(Sequence, OfAFolderWithFilesOfAnotherSaysWhichIsRead) {
     const TemporaryFolder folder;
     for (const char* name : {"shot_v1_0001.exr", "shot_v1_0002.exr", "shot_v2_0001.exr", "notes.exr"})

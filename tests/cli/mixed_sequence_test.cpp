@@ -47,6 +47,32 @@ TEST_F(MixedSequence, IsReadFromTheFirstFramesLayerByWorkersAndChunksToo) {
     }
 }
 
+TEST_F(MixedSequence, HasInTheReportOfEachFrameWhatItsFileLost) {
+    const auto write_depth = [&](int frame, const char* compression) {
+        const Image values(16, 9, 1);
+        std::vector<ExrOutputChannel> channels;
+        for (const char* name : {"R", "G", "B", "Z"})
+            channels.push_back({name, PixelType::float32, &values, 0});
+        ExrWriteOptions options;
+        options.data_window = options.display_window = {0, 0, 15, 8};
+        options.compression = compression;
+        write_exr(frame_path(frame), channels, options);
+    };
+    write_depth(1, "zip");
+    write_depth(2, "pxr24");
+    write_depth(3, "zip");
+    for (const char* jobs : {"1", "2"}) {
+        const CommandResult result =
+            run({"nothing.json", "in_####.exr", "-o", std::string(jobs) + "_####.exr", "--report",
+                 "report.json", "--jobs", jobs},
+                0);
+        expect_text(result.err, "in_0002.exr: depth is read from 'Z', stored with loss (pxr24)");
+        const auto frames = nlohmann::json::parse(read_text(folder_ / "report.json"))["frames"];
+        for (const std::size_t other : {0, 2}) EXPECT_FALSE(frames[other].contains("message")) << frames;
+        expect_text(frames[1].value("message", ""), "depth is read from 'Z', stored with loss (pxr24)");
+    }
+}
+
 TEST_F(MixedSequence, FailsInAFrameWithoutTheFirstFramesLayer) {
     write(1, view_layers({"Zeta"}));
     write(2, view_layers({"alpha"}));

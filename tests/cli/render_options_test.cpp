@@ -107,6 +107,29 @@ TEST_F(RenderOptions, RegionIsThatPartOfTheWholePicture) {
     EXPECT_EQ(png.height(), 20);
 }
 
+TEST_F(RenderOptions, RegionBeyondThePictureIsCutToItAndSaid) {
+    const CommandResult over = run({"nothing.json", "in_0002.exr", "--region=50,-4,40,20", "-o", "part.exr",
+                                    "-o", "part.png", "--report", "report.json"});
+    const std::string said =
+        "the region, 40 x 20 px at (50, -4), reaches beyond the picture, 64 x 36 px at (0, 0); 14 x 16 px at "
+        "(50, 0) of it are written";
+    EXPECT_NE(over.err.find("warning: in_0002.exr: " + said), std::string::npos) << over.err;
+    EXPECT_NE(read_text(folder_ / "report.json").find(said), std::string::npos);
+    EXPECT_EQ(ExrFile(folder_ / "part.exr").parts()[0].data_window, (Window{50, 0, 63, 15}));
+    EXPECT_EQ(read_png(folder_ / "part.png").width(), 14);
+    EXPECT_EQ(read_png(folder_ / "part.png").height(), 16);
+    const CommandResult within =
+        run({"nothing.json", "in_0002.exr", "--region=50,0,14,16", "-o", "part.exr"});
+    EXPECT_EQ(within.err.find("region"), std::string::npos) << within.err;
+    const CommandResult beside = run(
+        {"nothing.json", "in_0002.exr", "--region", "64,0,4,4", "-o", "none.exr"}, int(ExitCode::capture));
+    EXPECT_NE(
+        beside.err.find("no pixel of the data window (4 x 4 px at (64, 0) against 64 x 36 px at (0, 0); "
+                        "choose one within it)"),
+        std::string::npos)
+        << beside.err;
+}
+
 TEST_F(RenderOptions, HistoryGoesFromChunkToChunkBitForBit) {
     run({"trail.json", "in_####.exr", "-o", "whole_####.exr"});
     run({"trail.json", "in_####.exr", "--frames", "1-2", "--history-out", "h", "-o", "part_####.exr"});

@@ -334,6 +334,36 @@ TEST_F(EveryLayer, OfEqualNumbersIsNotTheSameWhereAnAttributeNamesAnotherSpace) 
     EXPECT_EQ(compared().verdict, Verdict::same);
 }
 
+TEST_F(EveryLayer, OfEqualIdsIsNotTheSameWhereManifestsNameOtherObjects) {
+    const auto write_with = [&](const char* name, const std::map<std::string, std::string>& texts) {
+        Samples samples(Part{"", "", {{"crypto00.R", {0.5f}}, {"crypto00.G", {1}}}});
+        samples.header.insert("cryptomatte/1234567/name", Imf::StringAttribute("crypto"));
+        for (const auto& [key, text] : texts)
+            samples.header.insert("cryptomatte/1234567/" + key, Imf::StringAttribute(text));
+        Imf::OutputFile file((folder_ / name).string().c_str(), samples.header);
+        file.setFrameBuffer(samples.frame);
+        file.writePixels(kHeight);
+    };
+    const std::string manifest = R"({"hero": "01020304", "sword": "0a0b0c0d"})";
+    write_with("r.exr", {{"manifest", manifest}});
+    for (const char* same : {R"({"sword": "0a0b0c0d", "hero": "01020304"})",
+                             R"({"hero": "01020304", "sword": "0a0b0c0d", "shield": "0a0b0c0e"})", "{"}) {
+        write_with("t.exr", {{"manifest", same}});
+        EXPECT_EQ(compared().verdict, Verdict::same) << same;
+    }
+    const Texts renamed = {
+        "the manifests of the Cryptomatte 'crypto' give one id other names: 01020304 is 'hero' in the "
+        "reference, 'villain' in the test image"};
+    const std::string other = R"({"villain": "01020304", "sword": "0a0b0c0d"})";
+    write_with("t.exr", {{"manifest", other}});
+    EXPECT_EQ(compared().verdict, Verdict::warning);
+    EXPECT_EQ(compared().warnings, renamed);
+    write_with("t.exr", {{"manif_file", "names.json"}});
+    EXPECT_EQ(compared().verdict, Verdict::same) << "the manifest is not there";
+    test::write_text(folder_ / "names.json", other);
+    EXPECT_EQ(compared().warnings, renamed) << "of a file beside the EXR";
+}
+
 TEST_F(EveryLayer, OfEqualNumbersIsNotTheSameWhereViewsChangePlaces) {
     const PartChannels left = {{"R", {1}}, {"G", {1}}, {"B", {1}}},
                        right = {{"R", {2}}, {"G", {2}}, {"B", {2}}};

@@ -4,12 +4,14 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "framework/base/error.h"
 #include "framework/serve/guards.h"
 #include "framework/serve/http_message.h"
 #include "tests/serve/client.h"
@@ -50,6 +52,14 @@ private:
     Connections connections_;
     std::thread thread_;
 };
+
+TEST(Responses, ToAFaultSayWhetherItIsOneOfTheProgram) {
+    EXPECT_NE(fault_response(std::out_of_range("map::at"))
+                  .body.find("a fault of the program itself: map::at; please report it"),
+              std::string::npos);
+    EXPECT_EQ(fault_response(Error(ExitCode::capture, "f.exr: no such file")).body,
+              error_response(500, "f.exr: no such file").body);
+}
 
 TEST(Connections, EndARequestThatComesTooSlowly) {
     const Echo echo({.request = 200ms});
