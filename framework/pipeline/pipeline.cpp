@@ -216,6 +216,8 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
             text += "--layer " + list_of_names(found.layers) +
                     (found.layers.size() == 1 ? " has it; " : " have it; ");
     }
+    if (const auto half = header.half_there.find(role); half != header.half_there.end())
+        text += half->second + "; ";
     if (kind_of_role(role) == RoleKind::motion)
         if (const auto motion = channels_of_motion(header.channels); !motion.empty())
             text += list_of_names(motion, "and") + (motion.size() == 1 ? " looks" : " look") +
