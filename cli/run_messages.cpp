@@ -129,6 +129,9 @@ void RunReporter::tell_conventions(const Capture& capture) {
     // Figures differ from frame to frame; the first stands for all.
     if (capture.deep && notes_.insert("deep").second)
         say("note", path + ": note: " + capture.deep->text(capture.deep_layers));
+    if (capture.pixels_below_albedo_floor > 0)
+        say("note", fmt::format("frame {}: {} with light and an albedo below the floor", header.frame,
+                                counted(capture.pixels_below_albedo_floor, "pixel")));
     if (capture.pixels_without_motion > 0)
         say("note",
             fmt::format("frame {}: {} pixels have no motion data; {}", header.frame,

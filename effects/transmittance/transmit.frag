@@ -1,6 +1,7 @@
 #version 450 core
 #include <pass>
 #include <lighting/lighting.glsl>
+#include <scattering/facet.glsl>
 #include <scattering/result.glsl>
 
 // Share that comes through, by the profile's Gaussians (Jimenez and others 2010, equation 6).
@@ -11,13 +12,32 @@ vec3 through(ScatteringProfileRow row, float mm) {
     return sum;
 }
 
+// Metres; 0 where none is known.
+float thickness_at(ivec2 at, uint key) {
+#ifdef HAS_THICKNESS
+    // It may come in a size of its own.
+    return texelFetch(thickness, ivec2(gl_FragCoord.xy * thickness_size.xy / vec2(frame.size)), 0).r;
+#elif defined(HAS_BEHIND_DEPTH)
+#if defined(HAS_BEHIND_OBJECT_ID) && defined(HAS_OBJECT_ID)
+    if (texelFetch(behind_object_id, at, 0).r + 1u != key) return 0.0;
+#endif
+    if (key == 0u) return 0.0;
+    ViewLines lines = view_lines();
+    Facet here = read_facet(lines, at);
+    float along_axis_m = texelFetch(behind_depth, at, 0).r - here.depth_m;
+    // Along the line of sight a slab seen at a slant is thicker than it is.
+    return along_axis_m * abs(dot(here.normal, view_line(lines, gl_FragCoord.xy)));
+#else
+    return 0.0;
+#endif
+}
+
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     uint key = texelFetch(facet, at, 0).r;
     vec4 light = texelFetch(irradiance, at, 0);
     vec3 n = texelFetch(normal, at, 0).xyz;
-    // Thickness may come in a size of its own.
-    float thickness_m = texelFetch(thickness, ivec2(gl_FragCoord.xy * thickness_size.xy / vec2(frame.size)), 0).r;
+    float thickness_m = thickness_at(at, key);
     vec3 position_m = world_position_m(gl_FragCoord.xy, texelFetch(surface, at, 0).a);
     vec3 behind = vec3(0.0);
     for (int i = 0; i < light_count(); ++i) {

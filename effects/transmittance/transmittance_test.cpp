@@ -125,5 +125,87 @@ TEST(Transmittance, LetsNothingThroughWhatIsInfinitelyThick) {
         ASSERT_EQ(light.at(x, kHeight - 1, 2), capture.images.at("irradiance").at(x, kHeight - 1, 2));
 }
 
+/// A slab of `thickness_m` whose front is turned by `angle` about the y axis and crosses the view axis at 1
+/// m, seen by a lens of 50 mm on 36 mm: its two sides as two layers, without a thickness.
+Capture slab(double thickness_m, double angle) {
+    Capture capture = thin();
+    capture.images.erase("aov:thickness");
+    std::erase(capture.header.roles, "aov:thickness");
+    capture.header.camera.set("focal_length", 50);
+    capture.header.camera.set("sensor_width", 36);
+    Image& front = capture.images.at("depth");
+    Image back(kWidth, kHeight, 1), ids(kWidth, kHeight, 1, ComponentType::uint32);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            // The plane n p = -cos(angle) d meets the line (X, Y, -1) z where z = cos d / (cos - sin X).
+            const double line_x = (x + 0.5 - kWidth / 2.0) * 36 / 50 / kWidth;
+            const double facing = std::cos(angle) - std::sin(angle) * line_x;
+            front.at(x, y, 0) = float(std::cos(angle) / facing);
+            back.at(x, y, 0) = float((std::cos(angle) + thickness_m) / facing);
+            ids.uint_at(x, y, 0) = capture.images.at("object_id").uint_at(x, y, 0);
+        }
+    capture.images[layer_role(1, "depth")] = std::move(back);
+    capture.images[layer_role(1, "object_id")] = std::move(ids);
+    capture.header.layer_count = 2;
+    for (const char* role : {"depth", "object_id"}) capture.header.layer_roles.push_back(layer_role(1, role));
+    return capture;
+}
+
+TEST(Transmittance, TakesTheThicknessOfASlabFromItsSecondLayerFromAnySide) {
+    for (const double angle : {0.0, 0.5, -1.0})
+        for (const double thickness_m : {0.0002, 0.001, 0.003}) {
+            const Capture layered = slab(thickness_m, angle);
+            const Image light = transmitted(layered);
+            double most = 0;
+            for (int y = 0; y < kHeight; ++y)
+                for (int x = 1; x + 1 < kWidth; ++x)
+                    for (int c = 0; c < 3; ++c) {
+                        const double intensity[] = {3, 2, 1};
+                        const double cosine = layered.images.at("normal").at(x, y, 2);
+                        const double more = std::clamp(0.3 - cosine, 0.0, 1.0) * intensity[c] / kPi *
+                                            through(1000 * thickness_m, c);
+                        const double before = layered.images.at("irradiance").at(x, y, c);
+                        // Depth has 24 bits: 6e-8 of 1 m is 6e-4 of the thinnest slab; slopes are halves.
+                        ASSERT_NEAR(light.at(x, y, c), before + more, 5e-3 * more + 2e-6)
+                            << angle << " " << thickness_m << ": " << x << " " << y << " " << c;
+                        most = std::max(most, more);
+                    }
+            EXPECT_GT(most, 0.02) << thickness_m;
+        }
+}
+
+TEST(Transmittance, LetsNothingThroughFromAnObjectBehindOrFromNothing) {
+    Capture layered = slab(0.001, 0.3);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            if (x < kWidth / 2) layered.images.at(layer_role(1, "object_id")).uint_at(x, y, 0) = 7;
+            else if (x > kWidth / 2)
+                layered.images.at(layer_role(1, "depth")).at(x, y, 0) =
+                    std::numeric_limits<float>::infinity();
+        }
+    const Image light = transmitted(layered);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            if (x == kWidth / 2) continue;
+            ASSERT_EQ(light.at(x, y, 1), layered.images.at("irradiance").at(x, y, 1)) << x << " " << y;
+        }
+    EXPECT_GT(light.at(kWidth / 2, kHeight - 1, 1),
+              layered.images.at("irradiance").at(kWidth / 2, kHeight - 1, 1));
+}
+
+TEST(Transmittance, WithoutAThicknessAndASecondLayerNamesBoth) {
+    Capture capture = thin();
+    capture.images.erase("aov:thickness");
+    std::erase(capture.header.roles, "aov:thickness");
+    try {
+        transmitted(capture);
+        FAIL() << "ran";
+    } catch (const std::exception& error) {
+        EXPECT_NE(std::string(error.what()).find("needs the role 'aov:thickness' or 'layer1:depth'"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 }  // namespace
 }  // namespace aftershade::test::transmittance

@@ -44,8 +44,10 @@ std::string event_line(const FrameEvent& event) {
 }
 
 std::string sighting_line(const ObjectSighting& sighting) {
-    return nlohmann::ordered_json{
-               {"event", "object"}, {"index", sighting.index}, {"found", sighting.is_found}}
+    return nlohmann::ordered_json{{"event", "object"},
+                                  {"index", sighting.index},
+                                  {"found", sighting.is_found},
+                                  {"px", sighting.px}}
                .dump() +
            "\n";
 }

@@ -39,6 +39,7 @@ struct FrameEvent {
 struct ObjectSighting {
     int index = 0;  ///< of the pipeline's objects, in ObjectMatches
     bool is_found = false;
+    double px = 0;  ///< of an entry that asks for a width in pixels
 
     bool operator==(const ObjectSighting&) const = default;
 };
@@ -47,7 +48,7 @@ struct ObjectSighting {
 /// longer than PIPE_BUF.
 std::string event_line(const FrameEvent& event);
 
-/// One line of JSON with its line end: {"event":"object","index":3,"found":true}.
+/// One line of JSON with its line end: {"event":"object","index":3,"found":true,"px":0.0}.
 std::string sighting_line(const ObjectSighting& sighting);
 
 /// One line of JSON with its line end: {"event":"end","code":0}.

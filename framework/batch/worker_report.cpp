@@ -71,7 +71,9 @@ std::optional<ObjectSighting> parse_sighting(std::string_view line) {
     const auto index = json.find("index"), found = json.find("found");
     if (index == json.end() || !index->is_number_integer() || found == json.end() || !found->is_boolean())
         return std::nullopt;
-    return ObjectSighting{index->get<int>(), found->get<bool>()};
+    const auto px = json.find("px");
+    return ObjectSighting{index->get<int>(), found->get<bool>(),
+                          px != json.end() && px->is_number() ? px->get<double>() : 0};
 }
 
 std::optional<int> parse_last_word(std::string_view line) {

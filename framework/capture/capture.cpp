@@ -15,6 +15,7 @@
 #include "framework/capture/layer_roles.h"
 #include "framework/capture/role_file.h"
 #include "framework/capture/sample_means.h"
+#include "framework/capture/stored_layers.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
 
@@ -33,48 +34,6 @@ std::vector<std::string> listed(const FoundChannels& found) {
 Window grid_of(const FrameFile& file, const FoundChannels& channels, const std::string& luminance) {
     if (!luminance.empty()) return file.window_of(luminance);
     return channels.empty() ? file.merged().data_window : file.window_of(channels[0][0]);
-}
-
-std::vector<std::string> present_of(const std::vector<std::string>& names) {
-    std::vector<std::string> present;
-    for (const std::string& name : names)
-        if (!name.empty()) present.push_back(name);
-    return present;
-}
-
-/// One layer over the grid, in the role's channel order. Of a component that the file lacks, alpha is 1, or
-/// what deep samples cover, and others 0.
-Image read_layer(const FrameFile& file, const std::vector<std::string>& names, const Window& grid,
-                 float outside, const DeepRead& how) {
-    const std::vector<std::string> present = present_of(names);
-    if (present.empty()) return Image(grid.width(), grid.height(), int(names.size()));
-    Image stored = file.read_floats(present, grid, outside, how);
-    if (present.size() == names.size()) return stored;
-
-    constexpr std::size_t kAlpha = 3;
-    Image filled(stored.width(), stored.height(), int(names.size()));
-    Image covered;
-    if (file.deep_part_of(present.front())) covered = file.read_deep_alpha(present.front(), grid, how);
-    const std::size_t pixels = stored.floats().size() / present.size();
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-        std::size_t next = 0;
-        for (std::size_t c = 0; c < names.size(); ++c) {
-            const float absent = c != kAlpha ? 0.0f : covered.empty() ? 1.0f : covered.floats()[pixel];
-            filled.floats()[pixel * names.size() + c] =
-                names[c].empty() ? absent : stored.floats()[pixel * present.size() + next++];
-        }
-    }
-    return filled;
-}
-
-Image read_layers(const FrameFile& file, const FoundChannels& channels, const Window& grid, float outside,
-                  const DeepRead& how) {
-    Image image = read_layer(file, channels[0], grid, outside, how);
-    for (std::size_t i = 1; i < channels.size(); ++i) {
-        const Image layer = read_layer(file, channels[i], grid, outside, how);
-        for (std::size_t j = 0; j < layer.floats().size(); ++j) image.floats()[j] += layer.floats()[j];
-    }
-    return image;
 }
 
 /// Engines leave 0 in the alpha of their buffers, which makes every pixel of a PNG transparent.
@@ -132,11 +91,13 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     source.file = &file;
     source.decoding = decoding;
     auto found = find_role_channels(open, file, role, decoding);
+    for (const RoleDecoding& other : decoding.otherwise)
+        if (!found && (found = find_role_channels(open, file, role, other))) source.decoding = other;
     RoleDecoding luminance;
     luminance.layers = {{decoding.luminance.empty() && role == kColorRole ? "Y" : decoding.luminance}};
     const bool has_luminance = !luminance.layers[0][0].empty() && !has_x_y_z(file.merged()) &&
                                find_channels(luminance, "", file.merged());
-    hold_channels(role, file, found, open.header);
+    hold_channels(role, file, found, source.decoding, open.header);
     if (found) source.channels = std::move(*found);
     else if (has_luminance) source.luminance = luminance.layers[0][0];
     else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
@@ -165,6 +126,7 @@ void CaptureReader::find_roles(OpenFrame& open) const {
     if (!sequence_.channels.contains(kColorRole) && !names.contains(kColorRole))
         add_role(open, kColorRole, RoleDecoding{});
     take_data_of_other_layer(open);
+    require_albedo(open);
     note_first_of_parts(open);
     note_assumed_space(open);
     note_data_read_as_color(open);
@@ -172,7 +134,8 @@ void CaptureReader::find_roles(OpenFrame& open) const {
     compare_sources(open);
     for (const auto& [role, source] : open.roles) {
         open.header.roles.push_back(role);
-        if (source.file != open.main.get() || source.channels.empty()) open.header.derived_roles.insert(role);
+        if (source.file != open.main.get() || source.channels.empty() || source.decoding.times_albedo)
+            open.header.derived_roles.insert(role);
     }
     if (!deep_picture(open)) return;
     open.header.layer_count = sequence_.deep_layers;
@@ -296,6 +259,7 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     if (role.type == ComponentType::uint32) {
         Image ids = read_ids(source, header.data_window, open.layer);
         warn_of_others(open, name, ids, capture);
+        if (name == kObjectIdRole) name_numbers(ids);
         return ids;
     }
     // A stored value beyond the data window is none: it gets the role's value after decoding, except where
@@ -326,6 +290,7 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
                 "\"scale\": -1 next to the role's channels in capture.json");
     }
     if (role.kind == RoleKind::motion) read_motion(open, name, image, color, capture);
+    if (name == kIrradianceRole) finish_irradiance(open, source, image, capture);
     if (role.kind == RoleKind::light)
         light_of_stored(image, source.colors, header.primaries, file.path().string());
     return image;
@@ -333,7 +298,7 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
 
 void CaptureReader::prefetch(const OpenFrame& open, std::span<const std::string> roles) const {
     std::map<const FrameFile*, std::vector<FrameFile::Request>> requests;
-    for (const std::string& role : roles) {
+    for (const std::string& role : with_parts_of_irradiance(open, roles)) {
         const auto found = open.roles.find(role);
         if (found == open.roles.end()) continue;
         const RoleSource& source = found->second;

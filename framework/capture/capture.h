@@ -54,6 +54,8 @@ struct CaptureHeader {
     std::map<std::string, std::vector<std::string>> other_channels;
     /// Roles that the main file does not store as they are: from files of their own, luminance, Cryptomatte.
     std::set<std::string> derived_roles;
+    /// By role that cannot be read: what is there of it, and what is missing, in whole sentences.
+    std::map<std::string, std::string> half_there;
     std::vector<std::string> channels;   ///< of the file, in this view
     Chromaticities primaries = kRec709;  ///< of the colours as they are in memory
     StoredColors stored_colors;          ///< of the colours as they are in the file
@@ -69,6 +71,8 @@ struct Capture {
     std::size_t pixels_without_motion =
         0;  ///< of velocity: filled, from the camera where that is known, else with 0
     bool motion_from_camera = false;
+    /// Of irradiance that is light over the albedo: those with light where the albedo is below the floor.
+    std::size_t pixels_below_albedo_floor = 0;
     /// Of a deep capture: what became of its samples, and as how many layers.
     std::optional<DeepReduction> deep;
     int deep_layers = 0;
@@ -158,7 +162,7 @@ private:
     std::unique_ptr<FrameFile> open_file(const std::filesystem::path& path, const std::string& role,
                                          int deep_layers, CaptureHeader& header) const;
     void hold_channels(const std::string& role, const FrameFile& file, std::optional<FoundChannels>& found,
-                       CaptureHeader& header) const;
+                       RoleDecoding& decoding, CaptureHeader& header) const;
     bool is_named(const std::string& role) const;
     static std::string text_of(const RoleSource& source);
     void compare_sources(OpenFrame& open) const;
@@ -184,7 +188,15 @@ private:
     const FrameFile& cryptomatte_file(const OpenFrame& open) const;
     Image read_cryptomatte_role(const OpenFrame& open, RoleKind kind) const;
     Image read_coverage(const OpenFrame& open, const std::string& role) const;
+    void name_numbers(Image& ids) const;
     void require_names(const OpenFrame& open, const Image& ids, std::span<const std::string> names) const;
+    void require_albedo(OpenFrame& open) const;
+    std::optional<Image> read_added_light(const OpenFrame& open, const RoleSource& source) const;
+    static std::vector<std::string> with_parts_of_irradiance(const OpenFrame& open,
+                                                             std::span<const std::string> roles);
+    Image read_stored_albedo(const OpenFrame& open) const;
+    void finish_irradiance(const OpenFrame& open, const RoleSource& source, Image& light,
+                           Capture& capture) const;
     void add_role(OpenFrame& open, const std::string& role, const RoleDecoding& decoding) const;
     void find_others(OpenFrame& open, const std::string& role, RoleSource& source) const;
     void warn_of_others(const OpenFrame& open, const std::string& role, const Image& stored,

@@ -30,12 +30,24 @@ std::map<std::string, Image> CaptureReader::encode_role(const OpenFrame& open, c
     Capture unused;
     if (source.decoding.premultiplied && open.roles.contains(kColorRole))
         color = read_role(open, kColorRole, nullptr, unused);
-    const DecodeContext context{header.path.string(), header.data_window, header.display_window,
-                                header.camera, color.empty() ? nullptr : &color};
+    DecodeContext context{header.path.string(), header.data_window, header.display_window, header.camera,
+                          color.empty() ? nullptr : &color};
+    Image albedo;
+    if (source.decoding.times_albedo) {
+        albedo = read_stored_albedo(open);
+        context.albedo = &albedo;
+    }
     if (kind_of_role(name) == RoleKind::light) stored_of_light(image, source.colors, header.primaries);
     const bool ids_as_uint = source.file->type_of(source.channels[0][0]) == PixelType::uint32;
-    return aftershade::encode_role(name, std::move(image), source.decoding, source.channels, ids_as_uint,
-                                   context);
+    auto stored = aftershade::encode_role(name, std::move(image), source.decoding, source.channels,
+                                          ids_as_uint, context);
+    if (const auto added = read_added_light(open, source))
+        for (std::size_t c = 0; c < source.channels[0].size(); ++c) {
+            const std::span<float> values = stored.at(source.channels[0][c]).floats();
+            for (std::size_t i = 0; i < values.size(); ++i)
+                values[i] -= added->floats()[i * source.channels[0].size() + c];
+        }
+    return stored;
 }
 
 std::map<std::string, RoleDecoding> CaptureReader::decodings(int frame) const {

@@ -62,6 +62,7 @@ void CaptureReader::decide(const std::vector<int>& files, FirstFrame& first) con
             for (const auto& [role, file] : open.role_files) first.views[role] = file->view();
             for (const auto& [role, source] : open.roles) {
                 first.channels[role] = source.channels;
+                first.decodings[role] = source.decoding;
                 first.sources[role] = text_of(source);
             }
             const auto color = first.channels.find(kColorRole);
@@ -156,7 +157,8 @@ std::unique_ptr<FrameFile> CaptureReader::open_file(const std::filesystem::path&
 }
 
 void CaptureReader::hold_channels(const std::string& role, const FrameFile& file,
-                                  std::optional<FoundChannels>& found, CaptureHeader& header) const {
+                                  std::optional<FoundChannels>& found, RoleDecoding& decoding,
+                                  CaptureHeader& header) const {
     const FirstFrame* const first = first_frame();
     if (!first || sequence_.channels.contains(role)) return;
     const auto held = first->channels.find(role);
@@ -167,6 +169,7 @@ void CaptureReader::hold_channels(const std::string& role, const FrameFile& file
                                  first->header->path.string() +
                                  (found ? ", and not from " + list_of_names(named(*found), "and") : ""));
     found = held->second;
+    decoding = first->decodings.at(role);
 }
 
 /// Whether the look decides what the role is read from.

@@ -156,6 +156,10 @@ Block make_capture_block() {
                       "Lights, instead of the files'."),
              optional("cryptomatte", grammar::object(cryptomatte_block()),
                       "Source of the roles mask and object_id."),
+             optional(
+                 "objects",
+                 grammar::map(grammar::integer(0, std::numeric_limits<std::uint32_t>::max()), {.by = "name"}),
+                 "Names of the numbers in object_id, for looks that name objects: `{\"head\": 1}`."),
              optional("cuts", grammar::list(frame_number), "First frame of each shot."),
              optional("layers",
                       grammar::list(grammar::object(capture_layer_block()), {.min = 2, .max = kMostLayers}),

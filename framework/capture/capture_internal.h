@@ -43,6 +43,7 @@ struct CaptureReader::FirstFrame {
     std::optional<CaptureHeader> header;            ///< nullopt where none can be read, or there is but one
     std::map<std::string, std::string> views;       ///< by role, of files of their own; "" for the main file
     std::map<std::string, FoundChannels> channels;  ///< by role
+    std::map<std::string, RoleDecoding> decodings;  ///< likewise
     std::map<std::string, std::string> sources;     ///< by role, in words
     bool has_alpha = false;
     bool has_followers = false;  ///< there are other frames, beside further sub-frames of this one

@@ -214,6 +214,7 @@ Capture CaptureReader::read_layered(int frame, std::span<const std::string> role
     capture.motion_from_camera = layers.front().motion_from_camera;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         capture.non_finite.merge(layers[i].non_finite);
+        capture.pixels_below_albedo_floor += layers[i].pixels_below_albedo_floor;
         fit(layers[i], capture.header);
         if (sequence_.layers[i].is_held_out && i > 0)
             undo_holdout(layers[i], shares_left(std::span(layers).first(i)).back());

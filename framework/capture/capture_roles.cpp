@@ -274,64 +274,6 @@ Image CaptureReader::read_cryptomatte_role(const OpenFrame& open, RoleKind kind)
     return ids;
 }
 
-Image CaptureReader::read_coverage(const OpenFrame& open, const std::string& role) const {
-    const Window& grid = open.header.data_window;
-    const std::vector<TableKey> objects = objects_of_coverage(role);
-    std::vector<std::string> names;
-    std::vector<TableKey> ids;
-    for (const TableKey& key : objects) {
-        if (key.name.empty()) ids.push_back(key);
-        else names.push_back(key.name);
-    }
-    const auto matte = find_cryptomatte(open, names);
-    Image mask(grid.width(), grid.height(), 1);
-    if (matte) mask = cryptomatte_mask(cryptomatte_file(open), *matte, names, grid);
-    if ((matte && ids.empty()) || (matte && !open.roles.contains(kObjectIdRole))) return mask;
-    Image object_id;
-    Capture unused;
-    if (open.ids_by_number) object_id = read_ids(*open.ids_by_number, grid);
-    else if (open.roles.contains(kObjectIdRole)) object_id = read_role(open, kObjectIdRole, nullptr, unused);
-    if (!matte && !names.empty()) require_names(open, object_id, names);
-    if (object_id.empty()) return mask;
-    const std::vector<IdRange> ranges = id_ranges(matte ? ids : objects);
-    for (std::size_t i = 0; i < mask.floats().size(); ++i)
-        if (contains(ranges, object_id.uints()[i])) mask.floats()[i] = 1;
-    return mask;
-}
-
-/// A name stands for a hash, and no hash is below 2^23: its exponent is never 0.
-void CaptureReader::require_names(const OpenFrame& open, const Image& ids,
-                                  std::span<const std::string> names) const {
-    constexpr std::uint32_t kSmallestHash = 1u << 23;
-    const auto source = open.roles.find(kObjectIdRole);
-    std::string instead = "the file has neither a Cryptomatte nor the role object_id";
-    if (source != open.roles.end()) {
-        const RoleSource& found = source->second;
-        if (found.from_cryptomatte) return;
-        const auto values = ids.uints();
-        const bool has_hash =
-            std::any_of(values.begin(), values.end(), [](std::uint32_t id) { return id >= kSmallestHash; });
-        const bool is_empty =
-            std::all_of(values.begin(), values.end(), [](std::uint32_t id) { return id == 0; });
-        const std::string& channel = found.channels[0][0];
-        if (has_hash || (is_empty && found.file->type_of(channel) == PixelType::uint32)) return;
-        instead =
-            "object_id is read from " + channel + ", which holds numbers, and the file has no Cryptomatte";
-    }
-    const std::vector<std::string> declared = declared_cryptomattes(cryptomatte_file(open));
-    std::string remedy = "render a Cryptomatte of objects, or name the object by its number";
-    if (!declared.empty()) {
-        instead += "; its header declares " + list_of_names(declared, "and") +
-                   ", whose channels are not in the file";
-        remedy =
-            "write multilayer EXR, or name the file with the Cryptomatte as \"files\": "
-            "{\"object_id\": ...} in capture.json";
-    }
-    throw UnknownObject(open.header.path.string() + ": the look names the object '" + names.front() +
-                            "', but " + instead + " (" + remedy + ")",
-                        names.front());
-}
-
 RoleElsewhere CaptureReader::find_elsewhere(const CaptureHeader& header, const std::string& role) const {
     const auto has_role = [&](const Sequence& other) {
         try {

@@ -103,10 +103,19 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
                                        const Profile& profile, const CaptureWriteOptions& options) {
     const CaptureHeader& header = capture.header;
     const auto color = capture.images.find(kColorRole);
-    const DecodeContext context{path.string(), header.data_window, header.display_window, header.camera,
-                                color == capture.images.end() ? nullptr : &color->second};
+    DecodeContext context{path.string(), header.data_window, header.display_window, header.camera,
+                          color == capture.images.end() ? nullptr : &color->second};
     const Chromaticities primaries =
         profile.color_space == "auto" ? header.primaries : *color_space_primaries(profile.color_space);
+    const auto as_stored = [&](Image image) {
+        if (primaries != header.primaries)
+            convert_colors(image, conversion_matrix(header.primaries, primaries));
+        return image;
+    };
+    Image albedo;
+    if (const auto known = capture.images.find(kAlbedoRole); known != capture.images.end())
+        albedo = as_stored(known->second);
+    if (!albedo.empty()) context.albedo = &albedo;
     std::vector<std::string> left_out;
     std::map<std::string, Image> stored;
     const auto colors = profile.roles.find(std::string(kColorRole));
@@ -117,13 +126,13 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
         const bool shares_colors = role != kColorRole && found != profile.roles.end() &&
                                    colors != profile.roles.end() &&
                                    shares_channels(found->second, colors->second);
-        if (found == profile.roles.end() || found->second.layers.empty() || shares_colors) {
+        const bool lacks_albedo =
+            found != profile.roles.end() && found->second.times_albedo && albedo.empty();
+        if (found == profile.roles.end() || found->second.layers.empty() || shares_colors || lacks_albedo) {
             left_out.push_back(role);
             continue;
         }
-        Image encoded = image;
-        if (kind_of_role(role) == RoleKind::light && primaries != header.primaries)
-            convert_colors(encoded, conversion_matrix(header.primaries, primaries));
+        Image encoded = kind_of_role(role) == RoleKind::light ? as_stored(image) : image;
         // A producer that is not ours stores ids as floats, as every one of them does.
         const bool ids_as_uint = profile.id == "native";
         require_exact_ids(path, image, ids_as_uint);
@@ -161,6 +170,7 @@ void write_capture_document(const std::filesystem::path& path, const CaptureDocu
         json["lights"] = nlohmann::ordered_json::parse(format_lights(document.lights));
     if (!document.layers_behind.empty()) json["layers"] = {nlohmann::ordered_json::object()};
     for (const std::string& frames : document.layers_behind) json["layers"].push_back({{"frames", frames}});
+    if (!document.objects.empty()) json["objects"] = document.objects;
     json["cuts"] = document.cuts;
     json["subframes"] = document.subframes;
     const std::string text = json.dump(2) + "\n";

@@ -42,6 +42,7 @@ struct CaptureDocument {
     std::map<std::string, double> camera;  ///< by field, in the field's unit
     std::string lens_model;
     std::vector<CaptureLight> lights;
+    std::map<std::string, unsigned> objects;  ///< numbers in object_id
     std::vector<int> cuts;
     int subframes = 1;
     std::vector<std::string> layers_behind;  ///< patterns; `frames` are the first layer's

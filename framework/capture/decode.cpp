@@ -239,6 +239,35 @@ void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
         for (float& z : depth.floats()) z = float(z + decoding.offset_m);
 }
 
+namespace {
+
+/// NaN compares false.
+float above_floor(float albedo, float floor) {
+    return albedo >= floor ? albedo : floor;
+}
+
+}  // namespace
+
+std::size_t divide_by_albedo(Image& light, const Image& albedo, float floor) {
+    const std::span<float> values = light.floats();
+    const std::span<const float> divisors = albedo.floats();
+    std::size_t inexact = 0;
+    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+        bool is_inexact = false;
+        for (std::size_t c = i; c < i + 3; ++c) {
+            is_inexact = is_inexact || (!(divisors[c] >= floor) && values[c] != 0);
+            values[c] /= above_floor(divisors[c], floor);
+        }
+        inexact += is_inexact ? 1 : 0;
+    }
+    return inexact;
+}
+
+void multiply_by_albedo(Image& light, const Image& albedo, float floor) {
+    for (std::size_t i = 0; i < light.floats().size(); ++i)
+        light.floats()[i] *= above_floor(albedo.floats()[i], floor);
+}
+
 void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context) {
     const bool ranged = is_ranged(decoding);
     const DepthRange range = ranged ? depth_range(decoding, context) : DepthRange{};

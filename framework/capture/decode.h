@@ -17,8 +17,9 @@ struct DecodeContext {
     Window grid;       ///< of the image
     Window display;
     Camera camera;
-    const Image* color = nullptr;  ///< RGBA of the same grid, for premultiplied vectors
-    int threads = 1;               ///< that may work on the image at a time
+    const Image* color = nullptr;   ///< RGBA of the same grid, for premultiplied vectors
+    int threads = 1;                ///< that may work on the image at a time
+    const Image* albedo = nullptr;  ///< of the same grid, as stored, for light times albedo
 };
 
 /// Why what the file stores of a role cannot be what its decoding says: a depth or a mask outside of 0 to 1.
@@ -33,6 +34,14 @@ void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
 /// indices of the pixels that have no motion data (not finite, or the producer's mark); they are 0.
 std::vector<std::size_t> decode_velocity(Image& velocity, const RoleDecoding& decoding,
                                          const DecodeContext& context = {});
+
+/// From light that a surface reflects to light that reaches it, over pi. Both images are as stored, with
+/// three channels. An albedo below the floor, or NaN, counts as the floor. Returns how many pixels have light
+/// there: the quotient of these is not exact.
+std::size_t divide_by_albedo(Image& light, const Image& albedo, float floor);
+
+/// The way back.
+void multiply_by_albedo(Image& light, const Image& albedo, float floor);
 
 /// The way back: values whose decoding is the depth, to float precision. +inf becomes the producer's mark for
 /// nothing hit. Throws as decode_depth does.

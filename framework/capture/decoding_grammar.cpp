@@ -27,6 +27,8 @@ constexpr const char* kChannelsDoc =
 constexpr const char* kSamplingDoc =
     "mean: the average of a pixel's samples, [repaired at edges](captures.md#averages-of-samples).";
 constexpr const char* kSumDoc = "Lists of channels to add.";
+constexpr const char* kElseDoc =
+    "Other decodings for files without these channels, best first; each has the keys of this one but else.";
 constexpr const char* kComponentDoc = "Channel of one component.";
 
 Key length(const char* name, const char* doc) {
@@ -82,6 +84,19 @@ std::vector<Key> motion_keys(const ChannelRole& role) {
             optional("shutter_frames", number({.above = 0}), "Number of frames that a vector spans.", "1")};
 }
 
+std::vector<Key> irradiance_keys() {
+    const Form aov = text({.pattern = aov_pattern(), .fault = "'{}' is not an aov:NAME"});
+    return {optional("plus", list(aov),
+                     "Images (aov:NAME) to add, of those that the capture has: light in files of its own."),
+            optional("times_albedo", boolean(),
+                     "Whether the sum is light that the surface reflects; it is then "
+                     "[divided by the role albedo](captures.md#light-divided-by-the-albedo).",
+                     "false"),
+            optional("albedo_floor", number({.above = 0}),
+                     "Least albedo to divide by; pixels with less are counted.", "0.01"),
+            optional("scale", number(), "Factor of the light: 0.31831 where it is not over pi.", "1")};
+}
+
 /// What roles of its kind have beside the names of channels.
 std::vector<Key> keys_of_kind(const ChannelRole& role) {
     if (role.has_optional_alpha())
@@ -89,6 +104,7 @@ std::vector<Key> keys_of_kind(const ChannelRole& role) {
     std::vector<Key> keys;
     if (role.kind == RoleKind::distance) keys = distance_keys();
     if (role.kind == RoleKind::motion) keys = motion_keys(role);
+    if (role.name == kIrradianceRole) keys = irradiance_keys();
     if (can_be_mean(role))
         keys.push_back(optional("sampling", choice({"point", "mean"}), kSamplingDoc, R"("point")"));
     return keys;
@@ -112,12 +128,15 @@ void check_reversed(const Node& node, const std::string& thing, Diagnostics& dia
                       thing + " is 'reversed', which needs the 'encoding' z_buffer or normalized");
 }
 
+grammar::Rule scale_rule() {
+    return grammar::custom_rule(
+        {.check = check_scale, .schema = R"({"properties": {"scale": {"not": {"anyOf": [{"const": 0},
+             {"type": "array", "contains": {"const": 0}}]}}}})"});
+}
+
 std::vector<grammar::Rule> rules_of_kind(RoleKind kind) {
     std::vector<grammar::Rule> rules;
-    if (kind == RoleKind::distance || kind == RoleKind::motion)
-        rules.push_back(grammar::custom_rule(
-            {.check = check_scale, .schema = R"({"properties": {"scale": {"not": {"anyOf": [{"const": 0},
-                 {"type": "array", "contains": {"const": 0}}]}}}})"}));
+    if (kind == RoleKind::distance || kind == RoleKind::motion) rules.push_back(scale_rule());
     if (kind == RoleKind::distance)
         rules.push_back(grammar::custom_rule(
             {.check = check_reversed,
@@ -125,6 +144,19 @@ std::vector<grammar::Rule> rules_of_kind(RoleKind kind) {
                  "then": {"required": ["encoding"],
                           "properties": {"encoding": {"enum": ["z_buffer", "normalized"]}}}})"}));
     return rules;
+}
+
+/// Nothing is divided by a floor alone.
+void check_floor(const Node& node, const std::string& thing, Diagnostics& diagnostics) {
+    const Node *const floor = node.find("albedo_floor"), *const times = node.find("times_albedo");
+    if (floor && (!times || !times->boolean))
+        diagnostics.error(floor->place, thing + " has an 'albedo_floor', which needs 'times_albedo': true");
+}
+
+std::vector<grammar::Rule> rules_of_irradiance() {
+    return {scale_rule(),
+            grammar::custom_rule({.check = check_floor, .schema = R"({"if": {"required": ["albedo_floor"]},
+             "then": {"required": ["times_albedo"], "properties": {"times_albedo": {"const": true}}}})"})};
 }
 
 void append(std::vector<Key>& keys, std::vector<Key> more) {
@@ -158,6 +190,11 @@ Block make_decoding(const ChannelRole& role) {
         grammar::at_least_one_of(ways, who + " needs 'channels', or 'sum' with lists of channels"));
     append(block.keys, keys_of_kind(role));
     for (grammar::Rule& rule : rules_of_kind(role.kind)) block.rules.push_back(std::move(rule));
+    if (role.name != kIrradianceRole) return block;
+    for (grammar::Rule& rule : rules_of_irradiance()) block.rules.push_back(std::move(rule));
+    Block other = block;
+    other.thing = "a decoding in 'else'";
+    block.keys.push_back(optional("else", list(grammar::object(std::move(other))), kElseDoc));
     return block;
 }
 
@@ -172,6 +209,9 @@ Block make_table() {
             key.of = role.name;
             block.keys.push_back(std::move(key));
         }
+    const Form others = list(grammar::object(Block{.name = "", .type = "decoding"}));
+    block.keys.push_back(optional("else", others, kElseDoc));
+    block.keys.back().of = kIrradianceRole;
     return block;
 }
 

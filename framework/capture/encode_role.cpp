@@ -37,6 +37,9 @@ std::map<std::string, Image> encode_role(const std::string& role, Image image, c
     }
     if (contract.kind == RoleKind::distance) encode_depth(image, decoding, context);
     if (contract.kind == RoleKind::motion) encode_velocity(image, decoding, context);
+    if (role == kIrradianceRole && decoding.scale != 1)
+        for (float& value : image.floats()) value /= decoding.scale;
+    if (decoding.times_albedo) multiply_by_albedo(image, *context.albedo, float(decoding.albedo_floor));
     for (std::size_t layer = 0; layer < channels.size(); ++layer)
         for (std::size_t c = 0; c < channels[layer].size(); ++c)
             if (const std::string& channel = channels[layer][c]; !channel.empty())

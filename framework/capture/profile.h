@@ -26,6 +26,9 @@ enum class VelocityUnit { px, uv, ndc };
 /// near and far.
 enum class DepthEncoding { linear, inverse, z_buffer, normalized };
 
+/// No material reflects less: charcoal reflects 0.02 to 0.04. An albedo of 8 bits is up to 0.002 off.
+inline constexpr double kAlbedoFloor = 0.01;
+
 /// How the stored channels of one role become the canonical image.
 struct RoleDecoding {
     /// Layers to add up (irradiance = direct + indirect); each names its channels, in the role's order. A
@@ -41,8 +44,9 @@ struct RoleDecoding {
     /// positions.
     bool is_mean = false;
 
+    float scale = 1;  ///< depth: metres for one stored unit; irradiance: of what is decoded
+
     // depth
-    float scale = 1;  ///< metres for one stored unit, after decoding
     float no_hit =
         std::numeric_limits<float>::infinity();  ///< stored values from here up mean that nothing was hit
     std::optional<float> no_hit_stored;          ///< what the producer itself writes there; else no_hit
@@ -63,6 +67,13 @@ struct RoleDecoding {
     /// A stored x above the one or below the other marks a pixel without motion data.
     std::optional<float> no_motion_above, no_motion_below;
     double shutter_frames = 1;  ///< frames that the stored vector spans
+
+    // irradiance, in the order in which they are done
+    std::vector<std::string> plus;       ///< roles to add, of those that there are: light in files of its own
+    bool times_albedo = false;           ///< the sum is light that the surface reflects: divided by albedo
+    double albedo_floor = kAlbedoFloor;  ///< the least that it is divided by
+    /// Other ways, of which the first counts whose channels are there.
+    std::vector<RoleDecoding> otherwise;
 };
 
 /// A camera value out of the header: the first of these attributes that is there. "*" stands for any text.

@@ -70,15 +70,31 @@ void read_velocity(const grammar::Reader& reader, RoleDecoding& decoding) {
     decoding.shutter_frames = reader.number("shutter_frames");
 }
 
-RoleDecoding read_decoding(const std::string& role_name, const Node& node) {
-    const grammar::Reader reader(node, decoding_block(role_name));
-    const ChannelRole role = *find_role(role_name);
+void read_irradiance(const grammar::Reader& reader, RoleDecoding& decoding) {
+    decoding.plus = reader.texts("plus");
+    decoding.times_albedo = reader.boolean("times_albedo");
+    decoding.scale = float(reader.number("scale"));
+    decoding.albedo_floor = reader.number("albedo_floor");
+}
+
+RoleDecoding read_decoding(const ChannelRole& role, const grammar::Reader& reader) {
     RoleDecoding decoding;
     read_layers(reader, role, decoding);
     if (role.has_optional_alpha()) decoding.luminance = reader.text("luminance");
     if (can_be_mean(role)) decoding.is_mean = reader.text("sampling") == "mean";
     if (role.kind == RoleKind::distance) read_depth(reader, decoding);
     if (role.kind == RoleKind::motion) read_velocity(reader, decoding);
+    if (role.name == kIrradianceRole) read_irradiance(reader, decoding);
+    return decoding;
+}
+
+RoleDecoding read_decoding(const std::string& role_name, const Node& node) {
+    const grammar::Reader reader(node, decoding_block(role_name));
+    const ChannelRole role = *find_role(role_name);
+    RoleDecoding decoding = read_decoding(role, reader);
+    if (role.name == kIrradianceRole)
+        for (const grammar::Reader& other : reader.objects("else"))
+            decoding.otherwise.push_back(read_decoding(role, other));
     return decoding;
 }
 

@@ -129,6 +129,9 @@ std::optional<Sequence> read_capture_document(const fs::path& path, Diagnostics&
         sequence.lights->push_back(read_light(light));
     if (const auto matte = reader.object("cryptomatte"))
         sequence.cryptomatte = CryptomatteChoice{matte->text("layer"), matte->texts("mask")};
+    if (const Node* objects = reader.find("objects"))
+        for (const Member& object : objects->members)
+            sequence.objects[object.key] = std::uint32_t(object.value.integer);
     if (const Node* cuts = reader.find("cuts"))
         for (const Node& cut : cuts->items) sequence.cuts.push_back(int(cut.integer));
     sequence.subframes = int(reader.integer("subframes"));

@@ -58,8 +58,9 @@ struct Sequence {
     std::optional<std::vector<CaptureLight>> lights;  ///< of capture.json
     std::vector<int> cuts;                            ///< frames that begin a shot
     std::optional<CryptomatteChoice> cryptomatte;
+    std::map<std::string, std::uint32_t> objects;  ///< of capture.json: names of the numbers in object_id
     /// Objects that the role object_id is requested for by name: it is read from the Cryptomatte that has
-    /// them.
+    /// them, or their numbers become the names' hashes.
     std::vector<std::string> object_names;
 
     /// The number in the name of a frame's file, by which a CaptureReader reads it.

@@ -123,6 +123,8 @@ struct ParamTypeTraits {
     ParamTableTraits table;
     /// resource: preprocessor lines that depend on the value; null: none. Each form is one program.
     std::string (*defines)(const ParamSpec& spec, const ParamValue& value) = nullptr;
+    /// How far light goes that moves as the value says, mm; null: it says nothing of that.
+    double (*length_mm)(const ParamValue& value) = nullptr;
     /// What the value has from files that documents name; null: nothing.
     std::string (*content)(const ParamValue& value) = nullptr;
 };

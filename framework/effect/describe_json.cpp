@@ -45,6 +45,7 @@ std::string describe_json(const EffectManifest& manifest) {
         if (input.frame != 0) entry["frame"] = input.frame;
         if (input.layer >= 0) entry["layer"] = input.layer;
         if (input.from_capture) entry["from"] = "capture";
+        if (!input.instead.empty()) entry["instead"] = input.instead;
         result["inputs"][input.name] = entry;
     }
     for (const OutputSpec& output : manifest.outputs)

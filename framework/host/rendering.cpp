@@ -36,11 +36,12 @@ void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture)
         require_capture_roles(pipeline, capture.header);
         return;
     }
-    const auto missing = find_missing_role(pipeline, capture.header.roles);
+    const auto missing = find_missing_role(pipeline, capture.header);
     if (!missing) return;
     const auto& roles = capture.header.roles;
     fail_at(ErrorKind::capture, "capture",
-            missing->who + " needs the role '" + missing->role + "'; the capture has " +
+            missing->who + " needs the role '" + missing->role +
+                (missing->instead.empty() ? "" : "' or '" + missing->instead) + "'; the capture has " +
                 (roles.empty() ? "no images" : list_of_names(roles, "and")) +
                 " (add it by set_image or set_texture)");
 }

@@ -35,6 +35,8 @@ inline constexpr std::array kRoleKinds = {RoleKind::light,     RoleKind::distanc
 inline constexpr const char* kColorRole = "color";      ///< what a look starts from and ends with
 inline constexpr const char* kDisplayRole = "display";  ///< what pictures for a screen hold
 inline constexpr const char* kDepthRole = "depth";
+inline constexpr const char* kIrradianceRole = "irradiance";
+inline constexpr const char* kAlbedoRole = "albedo";
 inline constexpr const char* kObjectIdRole = "object_id";
 inline constexpr const char* kMaskRole = "mask";
 

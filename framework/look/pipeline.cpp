@@ -166,14 +166,21 @@ const ParamSpec& mix_spec() {
     return spec;
 }
 
-std::optional<MissingRole> find_missing_role(const Pipeline& pipeline,
-                                             const std::vector<std::string>& roles) {
+std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const CaptureHeader& header) {
+    const std::vector<std::string>& roles = header.roles;
     for (const PipelineStep& step : pipeline.steps) {
+        const auto is_there = [&](const InputSource& source) {
+            return source.step >= 0 || contains(roles, source.output) ||
+                   contains(header.layer_roles, source.output);
+        };
         for (const InputSpec& input : step.manifest->inputs) {
             const InputSource& source = step.inputs.at(input.name);
-            if (!input.optional && source.step < 0 && !contains(roles, source.output))
+            const bool is_needed =
+                input.instead.empty() ? !input.optional : !is_there(step.inputs.at(input.instead));
+            if (is_needed && !is_there(source))
                 return MissingRole{"step '" + step.name + "' (effect " + step.manifest->id + ")",
-                                   source.output};
+                                   source.output,
+                                   input.instead.empty() ? "" : step.inputs.at(input.instead).output};
         }
         for (const auto& [output, source] : step.before)
             if (source.step < 0 && !contains(roles, source.output))
@@ -216,6 +223,8 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
             text += "--layer " + list_of_names(found.layers) +
                     (found.layers.size() == 1 ? " has it; " : " have it; ");
     }
+    if (const auto half = header.half_there.find(role); half != header.half_there.end())
+        text += half->second + "; ";
     if (kind_of_role(role) == RoleKind::motion)
         if (const auto motion = channels_of_motion(header.channels); !motion.empty())
             text += list_of_names(motion, "and") + (motion.size() == 1 ? " looks" : " look") +
@@ -230,15 +239,15 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
 Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader) {
     return Error(ExitCode::capture,
                  header.path.string() + ": " + missing.who + " needs the role '" + missing.role +
-                     "', which the profile '" + header.profile + "' does not find among the channels " +
-                     list_channels(header.channels) +
+                     (missing.instead.empty() ? "" : "' or '" + missing.instead) + "', which the profile '" +
+                     header.profile + "' does not find among the channels " + list_channels(header.channels) +
                      (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") + " (" +
                      remedies(missing.role, header, reader) + ")");
 }
 
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
                            const CaptureReader* reader) {
-    if (const auto missing = find_missing_role(pipeline, header.roles))
+    if (const auto missing = find_missing_role(pipeline, header))
         throw missing_role(*missing, header, reader);
 }
 

@@ -138,9 +138,9 @@ const ParamSpec& mix_spec();
 struct MissingRole {
     std::string who;  ///< "step 'bokeh' (effect bokeh)"
     std::string role;
+    std::string instead{};  ///< another that would do
 };
-/// `roles`: those that the capture has.
-std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const std::vector<std::string>& roles);
+std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const CaptureHeader& header);
 
 /// With the remedies; `reader` may be null.
 Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader);

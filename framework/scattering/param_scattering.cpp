@@ -146,7 +146,15 @@ std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
     return ScatteringValueReader(reader).read(node);
 }
 
-void read_declaration(const SpecReader&, ParamSpec& spec) {
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    declaration.keys.push_back(grammar::optional(
+        "per_metre", grammar::text(),
+        "Parameter with the mm of the profile for each metre of the capture: warn where by it the light of "
+        "no pixel goes 0.1 px far."));
+}
+
+void read_declaration(const SpecReader& reader, ParamSpec& spec) {
+    if (const Node* const per_metre = reader.node.find("per_metre")) spec.per_metre = per_metre->string;
     spec.columns = {column("index", ParamType::int_), column("d", ParamType::vec3),
                     column("direct", ParamType::vec3), column("falloff", ParamType::vec3),
                     column("reach", ParamType::float_)};
@@ -237,6 +245,14 @@ std::string defines(const ParamSpec& spec, const ParamValue& value) {
            (is_burley(content_of(value)) ? "1\n" : "0\n");
 }
 
+/// d of the channel in which it goes farthest, of all profiles.
+double length_mm(const ParamValue& value) {
+    double longest = 0;
+    for (const ScatteringProfile& profile : scattering_profiles_of(content_of(value)))
+        for (const double d_mm : profile.fitted_d_mm()) longest = std::max(longest, d_mm);
+    return longest;
+}
+
 std::string content(const ParamValue& value) {
     std::string text;
     for (ScatteringProfile profile : scattering_profiles_of(content_of(value))) {
@@ -250,6 +266,7 @@ constexpr ParamTypeTraits type() {
     ParamTypeTraits traits;
     traits.name = "scattering_profile";
     traits.home = ParamHome::resource;
+    traits.declare = declare;
     traits.read_declaration = read_declaration;
     traits.parse = parse;
     traits.schema = literal;
@@ -257,6 +274,7 @@ constexpr ParamTypeTraits type() {
     traits.texture = {".curves", texture_size, texels, sampler_glsl};
     traits.table = {entries, rows, "", table_glsl};
     traits.defines = defines;
+    traits.length_mm = length_mm;
     traits.content = content;
     return traits;
 }

@@ -285,6 +285,7 @@ private:
         document.frame_numbers = rendered_;
         document.fps = scene_.fps;
         document.profile = profile_.id;
+        for (const Object& object : scene_.objects) document.objects[object.name] = object.id;
         document.cuts = scene_.cuts;
         document.subframes = job_.subframes;
         const SceneState state = state_at(scene_, job_.frames.front(), job_.frames.front());

@@ -179,7 +179,7 @@ TEST(Status, NamesThePassThatIsCompiledOrDrawn) {
 }
 
 TEST(Status, HasWhichObjectsOfALookFramesHad) {
-    const ObjectSighting sighting{70000, true};
+    const ObjectSighting sighting{70000, true, 0.0625};
     EXPECT_EQ(parse_sighting(sighting_line(sighting)), sighting);
     EXPECT_EQ(parse_status(sighting_line(sighting)), WorkStatus{})
         << "an older program reads nothing from it";

@@ -106,5 +106,64 @@ TEST_F(Objects, ByNamesThatACryptomatteWithoutManifestLacksAreWarnedOf) {
     EXPECT_EQ(warnings(errors()), 0);
 }
 
+/// Skin in a frame of the focal length 50 mm on 36 mm, 32 px wide: light goes d * 32 * 50 / 36 px over the
+/// distance in mm, of red light in `skin` 0.4445 mm.
+class Scattering : public Objects {
+protected:
+    void write_frame(float background_m, int box_id) {
+        SyntheticScene scene{
+            .width = 32, .height = 18, .background = {0.1f, 0.2f, 0.4f}, .background_depth_m = background_m};
+        scene.box = SyntheticBox{.x = 2, .y = 6, .width = 8, .height = 6, .depth_m = background_m / 2};
+        Capture capture = make_capture(scene, 1);
+        capture.images.erase("mask");
+        for (std::uint32_t& id : capture.images.at("object_id").uints())
+            id = id == 2 ? std::uint32_t(box_id) : 5;
+        write_capture(capture, frame_path(1));
+    }
+    std::string errors_of(const std::string& params, const std::string& more = "") {
+        write_look(R"({ "effect": "sss_burley", "params": {)" + params + "}" + more + "}");
+        return errors();
+    }
+};
+
+TEST_F(Scattering, OfEveryObjectIsWarnedOfWhereFramesHaveSeveral) {
+    const std::string expected =
+        "aftershade: warning: sss_burley.object_ids is empty, so the step works on every object, and frames "
+        "have "
+        "several (name those that are meant, or give the step a mask)\n";
+    write_frame(0.2f, 2);
+    const std::string err = errors_of("");
+    EXPECT_NE(err.find(expected), std::string::npos) << err;
+    for (const std::string& sound :
+         {errors_of(R"("object_ids": [2])"), errors_of("", R"(, "mask": { "object": [2] })")})
+        EXPECT_EQ(sound.find("is empty"), std::string::npos) << sound;
+    write_frame(0.2f, 5);
+    const std::string one = errors_of("");
+    EXPECT_EQ(one.find("is empty"), std::string::npos) << one;
+}
+
+TEST_F(Scattering, ThatIsTooNarrowToBeSeenIsWarnedOfWithItsWidth) {
+    // The box at 4 m: 0.4445 / 4000 * 32 * 50 / 36 = 0.00494 px.
+    write_frame(8, 2);
+    const std::string expected =
+        "sss_burley.scattering_profile: light goes at most 0.0049 px far, by the profile's d, at the nearest "
+        "pixel, "
+        "and below 0.1 px nothing of it is seen (the scene's unit may be another than the metre: world_unit, "
+        "now "
+        "1000, is the millimetres of the profile for each metre of the capture)\n";
+    const std::string err = errors_of(R"("object_ids": [2], "scattering_profile": "skin")");
+    EXPECT_NE(err.find(expected), std::string::npos) << err;
+    EXPECT_NE(err.find("look.json:1:"), std::string::npos) << err;
+    // Of the background, twice as far away, half of it.
+    const std::string far = errors_of(R"("object_ids": [5])");
+    EXPECT_NE(far.find("at most 0.0025 px"), std::string::npos) << far;
+    // 21 times wider it is wide enough, 20 times it is not.
+    EXPECT_EQ(errors_of(R"("object_ids": [2], "world_unit": 47.6)").find("nothing of it"), std::string::npos);
+    EXPECT_NE(errors_of(R"("object_ids": [2], "world_unit": 50)").find("nothing of it"), std::string::npos);
+    write_look(R"({ "effect": "sss_burley", "params": { "object_ids": [2] } })");
+    const std::string jobs = errors({"--jobs", "1"});
+    EXPECT_NE(jobs.find("at most 0.0049 px"), std::string::npos) << jobs;
+}
+
 }  // namespace
 }  // namespace aftershade::test

@@ -104,6 +104,11 @@ const std::vector<Broken> kBrokenSections = {
       "2: only passes test whether an input is present or a number is not 0; the conditions of an input are "
       "on values of parameters",
       "2: the condition 'mde' is not a parameter; did you mean 'mode'?"}},
+    {test::kInputs,
+     R"("inputs": {"color": {"role": "color", "instead": "depth"}, "depth": {"role": "depth", "optional": true,
+        "instead": "color"}})",
+     {"2: an input with 'instead' must be 'optional': one without it is always there",
+      "2: input 'depth': 'instead' names 'color', which is not another optional input"}},
     {test::kOutputs,
      R"("outputs": {})",
      {"3: the effect has no outputs",

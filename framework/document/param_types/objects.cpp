@@ -1,4 +1,5 @@
 // A list of objects: shaders ask whether an object is in it. Its value is a table of one column.
+#include "framework/document/grammar.h"
 #include "framework/document/param_type.h"
 #include "framework/document/schema_pieces.h"
 #include "framework/document/table_keys.h"
@@ -7,7 +8,17 @@ namespace aftershade {
 
 namespace objects_type {
 
-void read_declaration(const SpecReader&, ParamSpec& spec) {
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    declaration.keys.push_back(
+        grammar::optional("warn_if_empty", grammar::boolean(),
+                          "Warn where the list is empty, the step has no mask and frames have several "
+                          "objects.",
+                          "false"));
+}
+
+void read_declaration(const SpecReader& reader, ParamSpec& spec) {
+    const Node* const warn = reader.node.find("warn_if_empty");
+    spec.warn_if_empty = warn && warn->boolean;
     ParamSpec listed;
     listed.name = "listed";
     listed.type = ParamType::bool_;
@@ -59,6 +70,7 @@ constexpr ParamTypeTraits type() {
     traits.name = "objects";
     traits.phrase = "a list of objects";
     traits.home = ParamHome::resource;
+    traits.declare = declare;
     traits.read_declaration = read_declaration;
     traits.parse = parse;
     traits.schema = literal;

@@ -37,6 +37,7 @@ struct InputSpec {
     /// All must hold, or the input is absent and its image is not read. On values of parameters alone, of
     /// optional inputs.
     std::vector<WhenSpec> when;
+    std::string instead;  ///< another optional input: one of the two must be there; "": neither need be
     std::string doc;
     Place place;
 

@@ -79,6 +79,10 @@ public:
             sampled("input", input);
             if (input.optional)
                 claim("HAS_" + upper_case(input.name), "input '" + input.name + "'", input.place);
+            const InputSpec* const instead = manifest_.find_input(input.instead);
+            if (!input.instead.empty() && (!instead || !instead->optional || instead == &input))
+                diagnostics_.error(input.place, "input '" + input.name + "': 'instead' names '" +
+                                                    input.instead + "', which is not another optional input");
         }
         for (const OutputSpec& output : manifest_.outputs) {
             word("output", output.name, output.place);
@@ -90,7 +94,13 @@ public:
         }
         for (const BufferSpec& buffer : manifest_.buffers) stored(buffer);
         for (const TileListSpec& list : manifest_.tiles) tile_list(list);
-        for (const ParamSpec& param : manifest_.params) parameter(param);
+        for (const ParamSpec& param : manifest_.params) {
+            parameter(param);
+            const ParamSpec* const unit = manifest_.find_param(param.per_metre);
+            if (!param.per_metre.empty() && (!unit || unit->type != ParamType::float_))
+                diagnostics_.error(param.place, "parameter '" + param.name + "': 'per_metre' names '" +
+                                                    param.per_metre + "', which is not a float parameter");
+        }
         if (manifest_.native) native(*manifest_.native);
         for (const PassSpec& pass : manifest_.passes) passes(pass);
     }

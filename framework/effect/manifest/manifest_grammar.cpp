@@ -88,6 +88,7 @@ Block input_block() {
              optional("from", choice({"capture"}),
                       "Take the capture's own image even if an earlier step outputs that role, unless the "
                       "look's `in` says otherwise."),
+             optional("instead", text(), "Another optional input: a capture must have one of the two."),
              input_when_key(
                  "For optional inputs: if they do not hold, the input is absent and its image is not read."),
              optional("doc", text(), "One sentence.")},
@@ -107,6 +108,10 @@ Block input_block() {
                   .fault =
                       "an input has 'layer' or one of 'history', 'frame' and 'from', not both: layers are "
                       "those of the capture's own frame"}),
+            when({.key = "instead",
+                  .required = {"optional"},
+                  .narrowed = {is_optional},
+                  .fault = "an input with 'instead' must be 'optional': one without it is always there"}),
             when({.key = "when",
                   .required = {"optional"},
                   .narrowed = {is_optional},

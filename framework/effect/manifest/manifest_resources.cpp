@@ -83,6 +83,7 @@ void ManifestParser::inputs(const Reader& document) {
         input.frame = int(reader.number("frame"));
         if (reader.has("layer")) input.layer = int(reader.integer("layer"));
         input.from_capture = reader.has("from");
+        input.instead = reader.text("instead");
         input.doc = reader.text("doc");
         add_conditions(reader, input.when);
         // The grammar reports conditions on other inputs.

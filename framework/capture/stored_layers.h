@@ -1,0 +1,20 @@
+// The stored channels of a role as one image; for the sources of this folder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/capture/found_channels.h"
+#include "framework/capture/frame_file.h"
+
+namespace aftershade {
+
+/// Those that a file has.
+std::vector<std::string> present_of(const std::vector<std::string>& names);
+
+/// The sum of the layers over the grid, as stored. Of a component that the file lacks, alpha is 1, or what
+/// deep samples cover, and others 0.
+Image read_layers(const FrameFile& file, const FoundChannels& channels, const Window& grid, float outside,
+                  const DeepRead& how);
+
+}  // namespace aftershade
