@@ -141,7 +141,7 @@ def main() -> None:
         figures |= WORKS[part]()
     history = json.loads(HISTORY.read_text()) if HISTORY.exists() else []
     history.append({"commit": commit(), "day": datetime.date.today().isoformat(), "machine": machine(), "figures": figures})
-    HISTORY.write_text(json.dumps(history, indent=1) + "\n")
+    HISTORY.write_text("[\n" + ",\n".join(map(json.dumps, history)) + "\n]\n")  # a run a line
     write_page(page, history)
     print("\n".join(f"{name}: {value}" for name, value in figures.items()))
 
