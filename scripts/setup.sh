@@ -4,9 +4,9 @@
 #   install_packages PACKAGE...   installs what dpkg does not have, and leaves out a PACKAGE? that this distribution has
 #                                 not; needs root or sudo, else prints the line to run
 #   build_target TARGET [-D...]   configures the preset release and builds
-source "$(dirname "${BASH_SOURCE[0]}")/help.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/lib/help.sh"
 export LC_ALL=C.UTF-8
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 
 # CMake uses a ccache that is installed; on a first build it costs a tenth, so that it is not among these.
 build_packages=(

@@ -274,9 +274,9 @@ TEST(Architecture, NoLinePointsOutsideTheRepository) {
     const std::string beside =
         "../"
         "shared";
-    const std::set<std::string> may_look_beside = {"scripts/check-all",           "scripts/check-damaged",
-                                                   "scripts/check-distributions", "scripts/dof/family.py",
-                                                   "scripts/quality-bokeh",       "tests/real_captures.h"};
+    const std::set<std::string> may_look_beside = {"scripts/checks/all", "scripts/checks/damaged",
+                                                   "scripts/checks/distributions", "scripts/measure/tree.py",
+                                                   "tests/real_captures.h"};
     // The page and the papers' numbers that the first authors worked from, and notes that only they had.
     const std::regex outside(
         "DESIGN"
@@ -313,8 +313,7 @@ TEST(Architecture, EveryLinkAndEveryPageThatIsNamedExists) {
             for (const std::string& named : matches(line, page, 0))
                 EXPECT_TRUE(files.contains(named)) << path << " names " << named;
         if (!path.ends_with(".md")) continue;
-        // Pieces of pages, which scripts join, lie in scripts/ and link from docs/.
-        const fs::path folder = path.starts_with("scripts/") ? "docs" : fs::path(path).parent_path();
+        const fs::path folder = fs::path(path).parent_path();
         for (const std::string& line : prose_of(text))
             for (const std::string& target : matches(line, link, 1)) {
                 if (target.find("://") != std::string::npos) continue;

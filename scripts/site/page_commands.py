@@ -1,4 +1,4 @@
-"""What scripts/check-docs prepares for the commands of a page, in shell; $ROOT is the checkout."""
+"""What scripts/check docs prepares for the commands of a page, in shell; $ROOT is the checkout."""
 
 SCENE = """echo '{ "aftershade": 1, "frames": "1-4", "size": [64, 36], "camera": { "position": [0, 0, 4] }, "ambient": 1, "objects": [
   { "shape": "sphere", "radius": 1, "position": { "keys": { "1": [-0.5, 0, 0], "4": [0.5, 0, 0] } } } ] }' >scene.json

@@ -83,7 +83,7 @@ def converted(text: str, page: pathlib.Path) -> str:
             borders = line.startswith("|") != before.startswith("|") and line.strip() and before.strip()
             if starts or borders or line.startswith("<!--") or before.startswith("<!--"):
                 lines.append("")
-            if is_item and (spaces := len(line) - len(line.lstrip())) in (2, 3):
+            if is_item and len(line) - len(line.lstrip()) in (2, 3):
                 line = "    " + line.lstrip()
         lines.append(line)
         before = line

@@ -2,8 +2,11 @@
 Started by tests/bench/dof-against-blender."""
 import sys
 
-from blender_turns import CAPTURES, ROOT, blender_words, halved, in_turns, suzanne_1080p
-from family import AFTERSHADE, effect_folders, effects, psnr_db, read_exr, run_effect
+from measure.blender_turns import blender_words, halved, in_turns, suzanne_1080p
+from measure.dof_family import effect_folders, effects, run_effect
+from measure.exr import read_exr
+from measure.measures import psnr_db
+from measure.tree import AFTERSHADE, CAPTURES, ROOT
 
 WORK = ROOT / "build/dof-against-blender"
 LENS = {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}
@@ -21,9 +24,9 @@ def main():
     walls, _ = in_turns({
         "aftershade": [AFTERSHADE, "run", WORK / f"{name}.json", source, "-o", ours, "--backend", "software", "--progress", "none", *extra],
         "blender": blender_words("dof_blender.py", source, theirs)})
-    truth = read_exr(CAPTURES / "suzanne/truth/dof_0004.exr", ["R", "G", "B"])
+    truth = read_exr(CAPTURES / "suzanne/truth/dof_0004.exr")
     for label, file in ("aftershade", ours), ("blender", theirs):
-        print(f"{label:10} against the renderer's lens, at 960x540: {psnr_db(truth, halved(read_exr(file, ['R', 'G', 'B']))):.2f} dB")
+        print(f"{label:10} against the renderer's lens, at 960x540: {psnr_db(truth, halved(read_exr(file))):.2f} dB")
     print(f"suzanne frame 4 at 1920x1080, whole process, EXR to EXR: `{name}` {walls['aftershade']:.2f} s, "
           f"Blender's Defocus {walls['blender']:.2f} s: {walls['blender'] / walls['aftershade']:.1f} times as fast")
 

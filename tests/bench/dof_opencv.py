@@ -4,6 +4,7 @@ laid over one another from the back. The lens is that of dof_against_blender.py.
     python dof_opencv.py IN.exr OUT.exr
 """
 import sys
+
 import cv2
 import numpy
 import OpenImageIO as oiio

@@ -1,5 +1,5 @@
 // Times effects on pictures of known CoC or surface, or on a capture's frame, or counts their texel fetches.
-// scripts/bench-dof, bench-sss and bench-roofline say which, as JSON on stdin, and read JSON from stdout; the
+// scripts/bench dof, sss and roofline say which, as JSON on stdin, and read JSON from stdout; the
 // figures are of their making, the measuring is here.
 #include <cstdint>
 #include <cstring>
@@ -26,7 +26,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Where the counting shaders of scripts/dof/effect_bench.py add up, in as many words as pixels would crowd.
+/// Where the counting shaders of scripts/measure/effect_bench.py add up, in as many words as pixels would
+/// crowd.
 constexpr unsigned kCountBinding = 15;
 constexpr std::size_t kCountWords = 4096;
 

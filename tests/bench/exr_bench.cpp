@@ -1,4 +1,4 @@
-// Times of reads and writes of OpenEXR files, in milliseconds, for scripts/bench-exr: lines of standard input
+// Times of reads and writes of OpenEXR files, in milliseconds, for scripts/bench exr: lines of standard input
 // are "read FILE CHANNEL..." and "write FILE FROM COMPRESSION"; each is answered by one line.
 #include "framework/file/exr_file.h"
 

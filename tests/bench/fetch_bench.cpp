@@ -1,4 +1,4 @@
-// Replays the texel fetches of one pass of an effect through the caches of GPUs. scripts/bandwidth says
+// Replays the texel fetches of one pass of an effect through the caches of GPUs. scripts/bench bandwidth says
 // which, as JSON on stdin, in words of its own copy of the shaders, which record each fetch; it reads JSON
 // from stdout.
 #include <algorithm>
@@ -29,7 +29,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Words of the buffer of records (scripts/speed/traced_shaders.py): width, first row and number of rows of
+/// Words of the buffer of records (scripts/measure/traced_shaders.py): width, first row and number of rows of
 /// the band that is recorded, records a pixel; then for each pixel of the band its number of fetches and its
 /// records.
 constexpr unsigned kBinding = 15;

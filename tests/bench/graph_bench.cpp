@@ -1,5 +1,5 @@
 // What the executor costs beside the draws themselves: sixteen copies of a picture through a frame graph, and
-// the same sixteen draws by GL alone. scripts/bench-graph compares them.
+// the same sixteen draws by GL alone. scripts/bench graph compares them.
 #include <benchmark/benchmark.h>
 
 #include <array>

@@ -5,8 +5,12 @@ import re
 
 import numpy
 
-from blender_turns import CAPTURES, ROOT, blender_words, halved, in_turns, seconds, suzanne_1080p
-from family import AFTERSHADE, psnr_db, read_exr, run_effect, write_exr
+from measure.blender_turns import blender_words, halved, in_turns, seconds, suzanne_1080p
+from measure.dof_family import run_effect
+from measure.exr import read_exr, write_exr
+from measure.measures import psnr_db
+from measure.pages import Page, table
+from measure.tree import AFTERSHADE, CAPTURES, ROOT
 
 WORK = ROOT / "build/motion-against-blender"
 PASS = re.compile(r"^(upload|readback|motion_blur\.\w+)\s+([\d.]+)", re.M)
@@ -41,28 +45,29 @@ def passes_ms(file, target):
 
 
 def main():
+    page = Page("quality-motion.md", "tests/bench/motion-against-blender", ["cost"])
     source = suzanne_1080p(WORK)
     ours, theirs = WORK / "aftershade.exr", WORK / "blender.exr"
     run_effect("motion_blur", source, ours, {}, WORK)  # fills the program cache and the file cache
     walls, said = in_turns({"aftershade": run_words(source, ours),
                             "blender": blender_words("motion_blender.py", "whole", source, theirs, 32),
                             "node": blender_words("motion_blender.py", "node", source, theirs, 32)})
-    truth = read_exr(CAPTURES / "suzanne/truth/motion_0004.exr", ["R", "G", "B"])
-    db = {name: psnr_db(truth, halved(read_exr(file, ["R", "G", "B"]))) for name, file in (("aftershade", ours), ("blender", theirs))}
+    truth = read_exr(CAPTURES / "suzanne/truth/motion_0004.exr")
+    db = {name: psnr_db(truth, halved(read_exr(file))) for name, file in (("aftershade", ours), ("blender", theirs))}
     effect = numpy.median([effect_ms(s) for s in said["aftershade"]]) / 1000
     spent = [tuple(map(float, re.search(r"compositor: ([\d.]+) s with the node, ([\d.]+) s without", s).groups())) for s in said["node"]]
     node = numpy.median([with_node - without for with_node, without in spent])
-    lines = ["| | `motion_blur` | Vector Blur, 32 samples | times as fast |", "|---|---|---|---|",
-             f"| whole process, EXR to EXR, s | {walls['aftershade']:.2f} | {walls['blender']:.2f} | {walls['blender'] / walls['aftershade']:.1f} |",
-             f"| upload to readback; the node alone, s | {effect:.3f} | {node:.2f} | {node / effect:.1f} |",
-             f"| all pixels at 960x540, dB | {db['aftershade']:.2f} | {db['blender']:.2f} | |", ""]
+    lines = [table(["", "`motion_blur`", "Vector Blur, 32 samples", "times as fast"], [
+        ["whole process, EXR to EXR, s", *(f"{walls[side]:.2f}" for side in ("aftershade", "blender")), f"{walls['blender'] / walls['aftershade']:.1f}"],
+        ["upload to readback; the node alone, s", f"{effect:.3f}", f"{node:.2f}", f"{node / effect:.1f}"],
+        ["all pixels at 960x540, dB", f"{db['aftershade']:.2f}", f"{db['blender']:.2f}", ""]]), ""]
     still = passes_ms(flat("still", 0), ours)
     for speed_px in 40, 80:
         moving = passes_ms(flat(f"moving_{speed_px}", speed_px), ours)
         lines.append(f"A frame at rest {still:.0f} ms, one that moves everywhere by {speed_px // 2} px while the shutter is open {moving:.0f} ms: "
                      f"{100 * still / moving:.1f} % (passes alone).")
-    (ROOT / "scripts/motion/cost-table.md").write_text("\n".join(lines) + "\n")
     print("\n".join(lines))
+    page.fill({"cost": "\n".join(lines)})
 
 
 main()

@@ -6,16 +6,20 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 
 import numpy
 
-from blender_turns import CAPTURES, ROOT, halved, in_turns, suzanne_1080p
 from dof_against_blender import LENS
-from family import AFTERSHADE, psnr_db, read_exr, run_effect
+from measure.blender_turns import halved, in_turns, suzanne_1080p
+from measure.dof_family import run_effect
+from measure.exr import read_exr
+from measure.measures import psnr_db
+from measure.tree import AFTERSHADE, CAPTURES, ROOT
 
 WORK = ROOT / "build/bench-rivals"
 BENCH = ROOT / "tests/bench"
-BPY, OPENCV = ROOT / "build/bpy-venv/bin/python", ROOT / "build/bench-venv/bin/python"
+BPY, OPENCV = ROOT / "build/bpy-venv/bin/python", sys.executable
 PASS = re.compile(r"^(?:upload|readback|motion_blur\.\w+)\s+([\d.]+)", re.M)
 COMPOSITOR = re.compile(r"compositor: ([\d.]+) s with the node, ([\d.]+) s without")
 
@@ -28,9 +32,9 @@ def ours(effect, source, params):
 
 
 def against_truth(name, files):
-    truth = read_exr(CAPTURES / f"suzanne/truth/{name}_0004.exr", ["R", "G", "B"])
+    truth = read_exr(CAPTURES / f"suzanne/truth/{name}_0004.exr")
     for file in files:
-        picture = halved(read_exr(WORK / f"{file}.exr", ["R", "G", "B"]))
+        picture = halved(read_exr(WORK / f"{file}.exr"))
         print(f"{file} against the renderer's {name}, at 960x540: {psnr_db(truth, picture):.2f} dB", flush=True)
 
 

@@ -1,4 +1,4 @@
-// The jobs that `submit` writes, read and run by what reads and runs them; scripts/check-farms has a real
+// The jobs that `submit` writes, read and run by what reads and runs them; scripts/check farms has a real
 // Slurm.
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 // Figures against those of NVIDIA's flip-evaluator, scikit-image, SciPy and OpenImageIO's idiff: as they were
-// stored by scripts/make-compare-figures, and as the tools say now where they are installed.
+// stored by scripts/make compare-figures, and as the tools say now where they are installed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -115,7 +115,7 @@ std::map<std::string, Pair> make_pairs() {
     return pairs;
 }
 
-/// The pairs as files, in $AFTERSHADE_COMPARE_PAIRS where that is set, for scripts/make-compare-figures.
+/// The pairs as files, in $AFTERSHADE_COMPARE_PAIRS where that is set, for scripts/make compare-figures.
 class CompareOracle : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -199,7 +199,7 @@ protected:
 
 TEST_F(CompareOracle, FiguresAreThoseStored) {
     std::ifstream in(AFTERSHADE_SOURCE_DIR "/tests/compare/oracle_figures.json");
-    ASSERT_TRUE(in) << "scripts/make-compare-figures makes it";
+    ASSERT_TRUE(in) << "scripts/make compare-figures makes it";
     expect_figures(Json::parse(in));
 }
 

@@ -1,4 +1,4 @@
-// libFuzzer's way in. AFTERSHADE_FUZZ_TARGET names one of the targets; scripts/fuzz sets it.
+// libFuzzer's way in. AFTERSHADE_FUZZ_TARGET names one of the targets; scripts/check fuzz sets it.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
     const char* name = std::getenv("AFTERSHADE_FUZZ_TARGET");
     for (const aftershade::fuzz::Target& target : aftershade::fuzz::targets()) {
         if (name && target.name == name) chosen = &target;
-        // Without a name: what there is, for scripts/fuzz.
+        // Without a name: what there is, for scripts/check fuzz.
         if (!name) std::printf("%s\n", std::string_view(target.name).data());
     }
     if (chosen) return 0;

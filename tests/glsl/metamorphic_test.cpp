@@ -1,7 +1,7 @@
 // Variants of the shipped shaders that mean the same draw the same bits.
 //
 // A small sample runs with the suite; AFTERSHADE_METAMORPHIC=500 makes that many variants
-// (scripts/check-metamorphic).
+// (scripts/check metamorphic).
 #include <gtest/gtest.h>
 
 #include <algorithm>

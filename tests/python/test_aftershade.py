@@ -1,4 +1,4 @@
-"""The Python package against the approved images, the program's own results and NumPy. Run by scripts/check-python."""
+"""The Python package against the approved images, the program's own results and NumPy. Run by scripts/check python."""
 
 import json
 import math
@@ -8,10 +8,9 @@ import re
 import threading
 from pathlib import Path
 
+import aftershade
 import numpy as np
 import pytest
-
-import aftershade
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = sorted(ROOT.glob("effects/*/cases/*.json"))
