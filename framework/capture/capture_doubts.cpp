@@ -40,8 +40,8 @@ std::string first_of(const FoundChannels& found) {
 
 /// Neither the user nor a producer's documentation says which channels the role has.
 bool CaptureReader::is_guessed(const OpenFrame& open, const std::string& role) const {
-    return sequence_.profile == "auto" && open.profile->id == "native" && !sequence_.channels.contains(role) &&
-           open.header.metadata.text("aftershade/channels") != "native";
+    return sequence_.profile == "auto" && open.profile->id == "native" &&
+           !sequence_.channels.contains(role) && open.header.metadata.text("aftershade/channels") != "native";
 }
 
 void CaptureReader::find_others(OpenFrame& open, const std::string& role, RoleSource& source) const {
@@ -73,10 +73,10 @@ void CaptureReader::warn_of_others(const OpenFrame& open, const std::string& rol
         other.channels = channels;
         try {
             const Window& grid = open.header.data_window;
-            const bool is_equal =
-                stored.type() == ComponentType::uint32
-                    ? are_alike(stored, read_ids(other, grid))
-                    : are_alike(stored, source.file->read_floats(channels[0], grid, find_role(role)->outside));
+            const bool is_equal = stored.type() == ComponentType::uint32
+                                      ? are_alike(stored, read_ids(other, grid))
+                                      : are_alike(stored, source.file->read_floats(channels[0], grid,
+                                                                                   find_role(role)->outside));
             if (is_equal) continue;
         } catch (const Error&) {
             // No number of an object: something else under the role's name.
@@ -88,8 +88,7 @@ void CaptureReader::warn_of_others(const OpenFrame& open, const std::string& rol
     for (const std::string& name : source.channels[0])
         if (!name.empty()) names += (names.empty() ? "\"" : ", \"") + name + "\"";
     capture.header.warnings.push_back(
-        role + " is read from '" + first_of(source.channels) + "', and " +
-        list_of_names(different, "and") +
+        role + " is read from '" + first_of(source.channels) + "', and " + list_of_names(different, "and") +
         (different.size() == 1 ? " goes by its name and holds" : " go by its name and hold") +
         " other values (say which is meant: \"channels\": {\"" + role + "\": {\"channels\": [" + names +
         "]}} in capture.json)");
@@ -116,13 +115,15 @@ void CaptureReader::warn_of_unit(const OpenFrame& open, const std::string& role,
         if (kind_of_role(other) == RoleKind::place &&
             is_distance_of(stored, read_role(open, other, nullptr, capture)))
             return;
-    capture.header.warnings.push_back(
-        role + " is read from '" + first_of(open.roles.at(role).channels) +
-        "' as metres, and lies between 0 and 1 everywhere, as a normalized depth or a z-buffer does (say what "
-        "it is: \"channels\": {\"" +
-        role + "\": {\"channels\": [\"" + first_of(open.roles.at(role).channels) +
-        "\"], \"encoding\": ...}} in capture.json, \"linear\" for metres, \"normalized\" or \"z_buffer\" with "
-        "near and far of its camera)");
+    capture.header.warnings.push_back(role + " is read from '" + first_of(open.roles.at(role).channels) +
+                                      "' as metres, and lies between 0 and 1 everywhere, as a normalized "
+                                      "depth or a z-buffer does (say what "
+                                      "it is: \"channels\": {\"" +
+                                      role + "\": {\"channels\": [\"" +
+                                      first_of(open.roles.at(role).channels) +
+                                      "\"], \"encoding\": ...}} in capture.json, \"linear\" for metres, "
+                                      "\"normalized\" or \"z_buffer\" with "
+                                      "near and far of its camera)");
 }
 
 }  // namespace aftershade
