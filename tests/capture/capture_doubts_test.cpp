@@ -31,8 +31,8 @@ std::string joined_lines(const Names& lines) {
 
 /// What is said of a file of 2 x 2 px without a producer's mark, as one of its roles is read.
 std::string said_of(std::vector<StoredChannel> channels, const std::string& role,
-                    const Attributes& attributes = {}, const std::map<std::string, RoleDecoding>& declared = {},
-                    bool has_color = true) {
+                    const Attributes& attributes = {},
+                    const std::map<std::string, RoleDecoding>& declared = {}, bool has_color = true) {
     const TemporaryFolder folder;
     if (has_color)
         for (const char* name : {"R", "G", "B"}) channels.push_back({name, {1, 2, 3, 4}});
@@ -46,17 +46,21 @@ std::string said_of(std::vector<StoredChannel> channels, const std::string& role
 const std::vector<float> kNear = {2, 3, 4, 5}, kFar = {20, 30, 40, 50};
 
 TEST(Contradiction, OfChannelsUnderOneRolesNamesIsAWarningWhereTheyDiffer) {
-    const std::string said =
-        said_of({{"Z", kNear}, {"depth.Z", kFar}, {"ViewLayer.Depth.Z", kFar}}, "depth");
-    EXPECT_NE(said.find("depth is read from 'Z', and 'depth.Z' and 'ViewLayer.Depth.Z' go by its name and hold "
-                        "other values (say which is meant: \"channels\": {\"depth\": {\"channels\": [\"Z\"]}}"),
-              std::string::npos)
+    const std::string said = said_of({{"Z", kNear}, {"depth.Z", kFar}, {"ViewLayer.Depth.Z", kFar}}, "depth");
+    EXPECT_NE(
+        said.find("depth is read from 'Z', and 'depth.Z' and 'ViewLayer.Depth.Z' go by its name and hold "
+                  "other values (say which is meant: \"channels\": {\"depth\": {\"channels\": [\"Z\"]}}"),
+        std::string::npos)
         << said;
     EXPECT_EQ(said_of({{"Z", kNear}, {"depth.Z", kNear}}, "depth"), "") << "copies";
     EXPECT_EQ(said_of({{"Z", {2, 3, 4, 1e10f}}, {"depth.Z", {2.001f, 3, 4, INFINITY}}}, "depth"), "")
         << "a copy as half";
     EXPECT_NE(said_of({{"Z", kNear}, {"z", kFar}}, "depth"), "") << "in another spelling";
-    EXPECT_NE(said_of({{"N.X", kNear}, {"N.Y", kNear}, {"N.Z", kNear}, {"normal.X", kFar}, {"normal.Y", kNear},
+    EXPECT_NE(said_of({{"N.X", kNear},
+                       {"N.Y", kNear},
+                       {"N.Z", kNear},
+                       {"normal.X", kFar},
+                       {"normal.Y", kNear},
                        {"normal.Z", kNear}},
                       "normal")
                   .find("normal is read from 'normal.X', and 'N.X' goes by its name"),
@@ -71,14 +75,19 @@ TEST(Contradiction, OfChannelsIsNotSaidWhereADocumentDecides) {
     declared.layers = {{"depth.Z"}};
     EXPECT_EQ(said_of(both, "depth", {}, {{"depth", declared}}), "");
     EXPECT_EQ(said_of(both, "depth", {{"aftershade/channels", std::string("native")}}), "");
-    EXPECT_EQ(said_of({{"V.Combined.R", kNear}, {"V.Combined.G", kNear}, {"V.Combined.B", kNear},
-                       {"V.Depth.Z", kNear}, {"Z", kFar}, {"V.Mist.Z", kFar}},
+    EXPECT_EQ(said_of({{"V.Combined.R", kNear},
+                       {"V.Combined.G", kNear},
+                       {"V.Combined.B", kNear},
+                       {"V.Depth.Z", kNear},
+                       {"Z", kFar},
+                       {"V.Mist.Z", kFar}},
                       "depth", {}, {}, false),
               "")
         << "Blender's own names";
-    EXPECT_EQ(said_of({{"Z", kNear}, {"sky.R", kNear}, {"sky.G", kNear}, {"sky.B", kNear}, {"sky.depth.Z", kFar}},
-                      "depth"),
-              "")
+    EXPECT_EQ(
+        said_of({{"Z", kNear}, {"sky.R", kNear}, {"sky.G", kNear}, {"sky.B", kNear}, {"sky.depth.Z", kFar}},
+                "depth"),
+        "")
         << "another picture's";
 }
 
@@ -155,7 +164,8 @@ TEST(Contradiction, OfALensAndAProjectionIsAWarningAndTheProjectionIsTaken) {
     EXPECT_EQ(other.camera.get("focal_length"), 36.0);
     Camera known;
     known.set("sensor_width", 24, "capture.json");
-    EXPECT_NEAR(read_camera_with(matrices_of(20), lens, known).camera.get("focal_length").value_or(0), 13.333, 0.01);
+    EXPECT_NEAR(read_camera_with(matrices_of(20), lens, known).camera.get("focal_length").value_or(0), 13.333,
+                0.01);
     known.set("focal_length", 36, "capture.json");
     EXPECT_EQ(read_camera_with(matrices_of(20), lens, known).faults, "") << "the user's word";
 }
@@ -180,7 +190,8 @@ TEST(Contradiction, OfMatricesThatAreNoneIsAWarningAndNeitherIsUsed) {
                 if (is_own) attributes["aftershade/matrices"] = 2;
                 attributes[name] = std::vector<float>(16, value);
                 const ReadCamera read = read_camera_with(attributes, {});
-                EXPECT_NE(read.faults.find(name), std::string::npos) << is_own << name << value << read.faults;
+                EXPECT_NE(read.faults.find(name), std::string::npos)
+                    << is_own << name << value << read.faults;
                 const bool is_view = name == std::string("worldToCamera");
                 EXPECT_FALSE(is_view ? read.camera.camera_from_world : read.camera.ndc_from_world)
                     << is_own << name << value;
@@ -218,7 +229,8 @@ TEST(Contradiction, OfARolesFileOfAnotherCameraOrPictureIsAWarning) {
     const Image values(2, 2, 1);
     const auto write_display = [&](const char* name, const Names& names, const Window& display) {
         std::vector<ExrOutputChannel> channels;
-        for (const std::string& channel : names) channels.push_back({channel, PixelType::float32, &values, 0});
+        for (const std::string& channel : names)
+            channels.push_back({channel, PixelType::float32, &values, 0});
         ExrWriteOptions options;
         options.data_window = {0, 0, 1, 1};
         options.display_window = display;
