@@ -139,7 +139,8 @@ inline Capture with_aovs(const EffectManifest& manifest, Capture capture) {
     // Any of them: the test may have taken any role away.
     const Image& other = capture.images.begin()->second;
     for (const InputSpec& input : manifest.inputs) {
-        if (!input.role.starts_with("aov:") || input.optional) continue;
+        const bool is_needed = !input.optional || !input.instead.empty();
+        if (!input.role.starts_with("aov:") || !is_needed) continue;
         Image image(other.width(), other.height(), 4);
         for (std::size_t i = 0; i < image.floats().size(); ++i) image.floats()[i] = 0.001f * float(i % 5);
         capture.images[input.role] = std::move(image);

@@ -39,7 +39,7 @@ struct FrameEvent {
 struct ObjectSighting {
     int index = 0;  ///< of the pipeline's objects, in ObjectMatches
     bool is_found = false;
-    double px = 0;  ///< of an entry that asks for a width in pixels
+    double px = 0;  ///< the width of an entry that needs one
 
     bool operator==(const ObjectSighting&) const = default;
 };

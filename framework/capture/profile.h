@@ -69,7 +69,7 @@ struct RoleDecoding {
     double shutter_frames = 1;  ///< frames that the stored vector spans
 
     // irradiance, in the order in which they are done
-    std::vector<std::string> plus;       ///< roles to add, of those that there are: light in files of its own
+    std::vector<std::string> plus;       ///< roles to add where they are there: light in files of its own
     bool times_albedo = false;           ///< the sum is light that the surface reflects: divided by albedo
     double albedo_floor = kAlbedoFloor;  ///< the least that it is divided by
     /// Other ways, of which the first counts whose channels are there.
