@@ -5,6 +5,7 @@
 #include <string>
 
 #include "framework/effect/manifest/manifest.h"
+#include "framework/effect/manifest/manifest_reader.h"
 #include "tests/documents.h"
 #include "tests/temporary_folder.h"
 

@@ -1,4 +1,5 @@
 // Programs of passes on software GL, and those that stay on disk.
+#include "framework/effect/manifest/manifest_reader.h"
 #include "framework/effect/pass_program.h"
 
 #include <cstdio>

@@ -1,4 +1,5 @@
 #include "framework/effect/usage_check.h"
+#include "framework/effect/manifest/manifest_reader.h"
 
 #include "tests/effect/assembly.h"
 
