@@ -16,6 +16,8 @@
 
 namespace aftershade::gpu {
 
+class Buffer;
+
 struct Limits {
     int texture_size = 0;
     int array_layers = 0;
