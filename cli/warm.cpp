@@ -16,9 +16,11 @@
 #include "cli/verbs.h"
 #include "framework/core/cores.h"
 #include "framework/core/data_path.h"
+#include "framework/core/error.h"
 #include "framework/core/scratch_folder.h"
 #include "framework/core/status.h"
 #include "framework/effect/program_store.h"
+#include "framework/gpu/driver_cache.h"
 #include "framework/pipeline/look.h"
 #include "framework/pipeline/run.h"
 
@@ -67,6 +69,8 @@ ExitCode warm(const WarmOptions& options) {
                           "the cache is off; set the variable to a folder, or leave it unset");
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
+    for (const std::string& fault : {store.fault(), gpu::prepare_driver_cache()})
+        if (!fault.empty()) throw Error(ExitCode::output, "nothing can be cached: " + fault);
     if (const auto code = run_in_worker(options.plugins, pipeline.has_foreign())) return *code;
 
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);
