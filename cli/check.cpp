@@ -58,6 +58,11 @@ void check_one_effect(const EffectManifest& manifest, const CheckOptions& option
     StatusWriter status;
     NativeRegistry natives = native_registry(options.plugins, &status);
     check_effect(context, manifest, data, {&natives, &status}, diagnostics);
+    try {
+        natives.require_ends();
+    } catch (const Error& error) {
+        diagnostics.error({manifest.id}, error.what());
+    }
 }
 
 /// In a worker where it draws what a stranger wrote. `manifest` nullptr: its document has faults.

@@ -20,14 +20,14 @@ std::string limits_of(const std::string& text) {
     return text.substr(open + 1, dash - open - 1) + " to " + text.substr(dash + 3, text.size() - dash - 4);
 }
 
-/// "TEXT:{a,b}" is a type with its choices, "INT:INT in [1 - 9]" one with its limits, "UINT:SIZE [b, ...]" a
+/// "TEXT:{a,b}" is a type with its choices, "INT:INT in [1 - 9]" one with its limits, "UINT:SIZE" a
 /// number of bytes with a unit (CLI::Option::get_type_name).
 void read_type(const std::string& text, CommandOption& option) {
     const std::size_t colon = text.find(':');
     option.type = text.substr(0, colon);
     if (colon == std::string::npos) return;
     const std::string rest = text.substr(colon + 1);
-    if (rest.starts_with("SIZE ")) {
+    if (rest == "SIZE") {
         option.type = "SIZE";
         return;
     }

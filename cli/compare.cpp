@@ -10,6 +10,7 @@
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/cores.h"
+#include "framework/base/text.h"
 #include "framework/compare/comparison_report.h"
 #include "framework/compare/difference_picture.h"
 
@@ -56,7 +57,7 @@ Verdict compare(const CompareOptions& options, const CompareRules& rules) {
     std::ostream& for_people = options.json ? std::cerr : std::cout;
     if (comparison.verdict == Verdict::file_error && !options.json)
         for (const std::string& fault : comparison.faults)
-            std::cerr << "aftershade: error: " << fault << "\n";
+            std::cerr << "aftershade: error: " << printable(fault) << "\n";
     else if (!options.quiet) for_people << text_of(comparison, rules) << std::flush;
     if (options.json) std::cout << json_text(comparison, rules) << std::flush;
     if (!options.csv.empty()) write_text_file(options.csv, csv_header() + csv_rows(comparison));
@@ -67,7 +68,7 @@ Verdict compare(const CompareOptions& options, const CompareRules& rules) {
 
 /// An error of the machine under idiff's codes.
 Verdict file_error(const char* message) {
-    std::cerr << "aftershade: error: " << message << "\n";
+    std::cerr << "aftershade: error: " << printable(message) << "\n";
     return Verdict::file_error;
 }
 

@@ -32,7 +32,7 @@ void add_tolerance(CLI::App& app, const std::string& word, const char* verdict, 
     add(std::string("allow") + (fails ? "failures" : "warnings"), options.allowed,
         fails ? "Number of pixels that may differ by any amount (default: 0)"
               : "Number of pixels that may differ without a warning (default: as --allowfailures)")
-        ->check(CLI::NonNegativeNumber);  // strtoull takes -1 for a number of its own
+        ->check(CLI::NonNegativeNumber);
     add(word + "-flip", options.flip, "Largest mean FLIP error of a layer");
     add(word + "-ssim", options.ssim, "Smallest SSIM of a layer");
 }

@@ -14,11 +14,13 @@
 #include "cli/verbs.h"
 #include "framework/base/cores.h"
 #include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/batch/approved_image.h"
 #include "framework/effect/native/confinement.h"
 #include "framework/effect/native/native_process.h"
 #include "framework/effect/native/thread_limit.h"
 #include "framework/gpu/context.h"
+#include "framework/gpu/driver_cache.h"
 
 namespace aftershade::cli {
 
@@ -80,6 +82,8 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
             fmt::print("{:<13} {:<7} {:<45} {}\n", name, "yes", report.info.renderer, report.info.version);
         else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
     }
+    if (const std::string& fault = gpu::prepare_driver_cache(); !fault.empty())
+        fmt::print("shader cache  off: {}\n", printable(fault));
     fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
     try {
         print_confinement(confinement_of_plugins());
@@ -97,6 +101,8 @@ void print_json(const std::vector<gpu::BackendReport>& reports) {
     } catch (const Error& error) {
         document["plugins"] = {{"reason", error.what()}};
     }
+    if (const std::string& fault = gpu::prepare_driver_cache(); !fault.empty())
+        document["shader_cache"] = {{"reason", fault}};
     document["backends"] = nlohmann::ordered_json::array();
     for (const gpu::BackendReport& report : reports) {
         nlohmann::ordered_json row{{"backend", gpu::backend_name(report.backend)}, {"usable", report.usable}};
@@ -110,7 +116,7 @@ void print_json(const std::vector<gpu::BackendReport>& reports) {
         }
         document["backends"].push_back(std::move(row));
     }
-    fmt::print("{}\n", document.dump(2));
+    fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace

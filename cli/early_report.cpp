@@ -43,6 +43,7 @@ void write_early_report(const RunArguments& options, ExitCode code, const std::s
         write_text_file(options.jobs.report,
                         report_json({options.look, options.capture.capture, {}, 0, code, "", "", message}));
     } catch (const Error& error) {
+        if (code == ExitCode::done) throw;
         std::cerr << printable_lines(error.what()) << "\n";
     }
 }

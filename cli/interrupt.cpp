@@ -1,20 +1,39 @@
 #include "cli/interrupt.h"
 
 #include <csignal>
+#include <cstdint>
 #include <cstring>
+#include <ctime>
 
 namespace aftershade::cli {
 
 namespace {
 
-std::atomic<bool> interrupted{false};  // a signal handler can reach nothing but a global
-static_assert(std::atomic<bool>::is_always_lock_free);
+// A signal handler can reach nothing but globals.
+std::atomic<bool> interrupted{false};
+std::atomic<int> first_number{0};
+std::atomic<std::int64_t> first_at_ms{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free);
 
-void on_signal(int) {
-    interrupted = true;
-    // Whichever comes second ends the process at once.
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+/// timeout(1) sends its signal to the child and then to the group, and so do programs that pass Ctrl+C on.
+constexpr std::int64_t kOneInterrupt_ms = 300;
+
+std::int64_t now_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t(now.tv_sec) * 1000 + now.tv_nsec / 1'000'000;
+}
+
+void on_signal(int number) {
+    if (!interrupted.exchange(true)) {
+        first_number = number;
+        first_at_ms = now_ms();
+        return;
+    }
+    if (number == first_number && now_ms() - first_at_ms < kOneInterrupt_ms) return;
+    // At once: the signal comes again as this returns.
+    std::signal(number, SIG_DFL);
+    std::raise(number);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "cli/number_options.h"
 #include "framework/base/cores.h"
 #include "framework/document/units.h"
 #include "framework/run/warmup.h"
@@ -79,9 +80,9 @@ void add_job_options(CLI::App& app, JobArguments& options) {
     app.add_option("--frame-timeout", options.frame_timeout_s,
                    "Kill a worker that finishes no frame in this many seconds; its frame fails")
         ->check(CLI::Range(0.1, 1e6));
-    app.add_option("--max-memory", options.memory_bytes,
-                   "Limit each worker's address space, such as 4GB; a frame that needs more fails")
-        ->transform(CLI::AsSizeValue(false));
+    takes_bytes(
+        app.add_option("--max-memory", options.memory_bytes,
+                       "Limit each worker's address space, such as 4GB; a frame that needs more fails"));
     app.add_flag("--stop-on-error", options.stop_on_error, "Stop at the first frame that fails");
     app.add_option("--report", options.report, "Write the outcome of each frame to this .json");
     // A worker's own, which no user needs.

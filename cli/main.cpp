@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -23,6 +24,7 @@
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
 #include "cli/help_formatter.h"
+#include "cli/number_options.h"
 #include "cli/plugin_options.h"
 #include "cli/slip_hints.h"
 #include "cli/verbs.h"
@@ -133,6 +135,20 @@ bool stdout_is_whole() {
     return std::fflush(stdout) == 0 && std::cout && std::ferror(stdout) == 0;
 }
 
+/// What is not the program's own fault; "" where nothing says so.
+std::string fault_outside(const std::exception& error) {
+    constexpr int kNotUtf8 = 316;  // https://json.nlohmann.me/home/exceptions
+    const auto* json = dynamic_cast<const nlohmann::json::type_error*>(&error);
+    if (json && json->id == kNotUtf8)
+        return "a name is not UTF-8, which JSON needs; rename the file or the option's value (" +
+               std::string(error.what()) + ")";
+    std::error_code absent;
+    if (dynamic_cast<const std::filesystem::filesystem_error*>(&error) &&
+        !std::filesystem::exists("/proc/self/exe", absent))
+        return std::string("/proc is not mounted, and is needed here: ") + error.what();
+    return "";
+}
+
 std::string stdout_fault(int number) {
     return std::string("standard output cannot be written: ") + std::strerror(number);
 }
@@ -143,6 +159,7 @@ int main(int argc, char** argv) {
     if (argc == 2 && std::string_view(argv[1]) == aftershade::cli::kNativeHostWord)
         return aftershade::serve_native_code(aftershade::kNativeDescriptor);
     hold_standard_streams();
+    aftershade::prepare_for_memory_limit();
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app{"Run chains of GLSL effects over G-buffer captures, without a display.", "aftershade"};
@@ -161,6 +178,7 @@ int main(int argc, char** argv) {
 #define AFTERSHADE_ADD_VERB(name, help) add(#name, help, aftershade::cli::add_##name);
     AFTERSHADE_VERBS(AFTERSHADE_ADD_VERB)
 #undef AFTERSHADE_ADD_VERB
+    aftershade::cli::refuse_odd_numbers(app);
 
     const auto keeps_idiffs_codes = [&] {
         return app.got_subcommand("compare") || app.got_subcommand("golden");
@@ -183,7 +201,6 @@ int main(int argc, char** argv) {
             std::cerr << "hint: " << aftershade::printable(hint) << "\n";
         return end(int(code));
     }
-    aftershade::prepare_for_memory_limit();
     const auto fail_for_stdout = [&](int number) {
         constexpr ExitCode kIdiffsFileError{4};
         return fail(keeps_idiffs_codes() ? kIdiffsFileError : ExitCode::output, stdout_fault(number).c_str());
@@ -202,6 +219,9 @@ int main(int argc, char** argv) {
         // So fmt::print reports a stream that takes nothing.
         const auto* system = dynamic_cast<const std::system_error*>(&error);
         if (system && std::ferror(stdout)) return fail_for_stdout(system->code().value());
+        if (const std::string fault = fault_outside(error); !fault.empty())
+            return fail(keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage,
+                        fault.c_str());
         return fail(
             ExitCode::effect,
             (std::string("a fault of the program itself: ") + error.what() + "; please report it").c_str());

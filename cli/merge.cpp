@@ -11,6 +11,7 @@
 #include "cli/merge_reports.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
+#include "framework/base/text.h"
 #include "framework/batch/farm_job.h"
 
 namespace aftershade::cli {
@@ -55,8 +56,9 @@ ExitCode merge(const MergeArguments& options) {
     if (files.empty()) throw Error(ExitCode::capture, options.reports.front() + ": holds no report (.json)");
     const MergedReport merged = merge_reports(files);
     write_text_file(options.output, merged_report_json(merged));
-    for (const MissingReport& missing : merged.missing)
-        std::cerr << missing.file << ": " << missing.why << "\n";
+    for (const auto* faults : {&merged.missing, &merged.failed})
+        for (const MissingReport& report : *faults)
+            std::cerr << printable(report.file + ": " + report.why) << "\n";
     std::cerr << failures_text(merged.batch.frames) << merge_summary(merged);
     return merged.batch.exit_code;
 }

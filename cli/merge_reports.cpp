@@ -40,9 +40,20 @@ void add_frames(const Json& report, std::map<int, FrameEvent>& frames) {
     }
 }
 
+/// Why the run ended, beyond what its frames say: they have what failed, could not be read or was not run.
+std::string end_of_run(const Json& report) {
+    const int code = report.value("exit_code", 0);
+    const std::string error = report.value("error", "");
+    const auto is = [&](ExitCode of_frames) { return code == int(of_frames); };
+    const bool frames_say =
+        is(ExitCode::done) || is(ExitCode::partial) || is(ExitCode::capture) || is(ExitCode::interrupted);
+    if (error.empty() && frames_say) return "";
+    return fmt::format("its run ended with exit code {}{}{}", code, error.empty() ? "" : ": ", error);
+}
+
 /// What keeps the file from being a report; "" where nothing does, and its content has been added.
 std::string add_report(const TaskReport& file, BatchSummary& batch, std::map<int, FrameEvent>& frames,
-                       std::map<int, TaskReport>& owners) {
+                       std::map<int, TaskReport>& owners, std::string& end) {
     std::string fault;
     const std::string text = file.folder.empty()
                                  ? read_regular_file(file.name, kMostReportBytes, fault)
@@ -66,6 +77,7 @@ std::string add_report(const TaskReport& file, BatchSummary& batch, std::map<int
         batch.look = report.value("look", batch.look);
         batch.capture = report.value("capture", batch.capture);
         batch.seconds += report.at("seconds").get<double>();
+        end = end_of_run(report);
         for (auto& [frame, event] : added) frames[frame] = std::move(event);
     } catch (const UnlikelyFrame& frame) {
         return "has a frame " + frame.text + ", which is not a whole number of at most 9 digits";
@@ -82,11 +94,30 @@ MergedReport merge_reports(const std::vector<TaskReport>& files) {
     merged.tasks = int(files.size());
     std::map<int, FrameEvent> frames;
     std::map<int, TaskReport> owners;
-    for (const TaskReport& file : files)
-        if (const std::string why = add_report(file, merged.batch, frames, owners); !why.empty())
+    struct Ended {
+        TaskReport file;
+        std::string why;
+        bool has_frames;
+    };
+    std::vector<Ended> ended;
+    const auto owns_some = [&](const TaskReport& file) {
+        return std::ranges::any_of(owners,
+                                   [&](const auto& owner) { return owner.second.path() == file.path(); });
+    };
+    for (const TaskReport& file : files) {
+        std::string end;
+        if (const std::string why = add_report(file, merged.batch, frames, owners, end); !why.empty())
             merged.missing.push_back({file.path().string(), why});
+        else if (!end.empty()) ended.push_back({file, end, owns_some(file)});
+    }
     for (auto& [frame, event] : frames) merged.batch.frames.push_back(std::move(event));
-    const bool whole = merged.missing.empty() && count_outcome(merged.batch.frames, "failed") == 0 &&
+    for (const Ended& one : ended)
+        if (!one.has_frames || owns_some(one.file))
+            merged.failed.push_back({one.file.path().string(), one.why});
+    if (!merged.failed.empty())
+        merged.batch.error = merged.failed.front().file + ": " + merged.failed.front().why;
+    const bool whole = merged.missing.empty() && merged.failed.empty() &&
+                       count_outcome(merged.batch.frames, "failed") == 0 &&
                        count_outcome(merged.batch.frames, "not run") == 0;
     merged.batch.exit_code = whole ? ExitCode::done : ExitCode::partial;
     return merged;

@@ -24,11 +24,13 @@ struct MergedReport {
     BatchSummary batch;  ///< frames in order; seconds are the sum over the tasks
     int tasks = 0;
     std::vector<MissingReport> missing;  ///< also those that are not reports
+    std::vector<MissingReport> failed;   ///< whose run ended with an error that no frame has
 };
 
 /// A frame that several reports name is as the last of them has it; tasks divide their frames, so of one
 /// folder the second report that names a frame does not count. The exit code is `partial` where a frame
-/// failed or was not run, or a report is missing.
+/// failed or was not run, a report is missing, or a run ended with an error and no later report has its
+/// frames.
 MergedReport merge_reports(const std::vector<TaskReport>& files);
 
 /// A report of `run --report` with "tasks" and "missing_reports" besides.

@@ -10,6 +10,7 @@
 
 #include "cli/command_line.h"
 #include "cli/interrupt.h"
+#include "cli/number_options.h"
 #include "framework/base/memory_limit.h"
 #include "framework/batch/worker.h"
 
@@ -57,9 +58,8 @@ void add_plugin_options(CLI::App& app, PluginOptions& options) {
     app.add_option("--plugin-timeout", options.timeout_s, "Time limit per call of a plug-in, in seconds")
         ->check(CLI::Range(0.1, 1e6))
         ->capture_default_str();
-    app.add_option("--plugin-memory", options.memory_bytes,
-                   "Limit the address space of the plug-in process (default: 4GB)")
-        ->transform(CLI::AsSizeValue(false));
+    takes_bytes(app.add_option("--plugin-memory", options.memory_bytes,
+                               "Limit the address space of the plug-in process (default: 4GB)"));
     add_pass_timeout_option(app, options);
 }
 

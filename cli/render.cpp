@@ -123,10 +123,11 @@ void read_size(const std::string& text, scene::Job& job, Diagnostics& diagnostic
         const auto range = parse_frame_range(part);
         return range && range->size() == 1 ? range->front() : 0;
     };
-    job.width_px = x == std::string::npos ? 0 : side(text.substr(0, x));
-    job.height_px = x == std::string::npos ? 0 : side(text.substr(x + 1));
-    if (std::min(job.width_px, job.height_px) < 1 || std::max(job.width_px, job.height_px) > 16384)
-        diagnostics.error(place_of("--size", text), "a size is WIDTHxHEIGHT, sides from 1 to 16384 px");
+    const int width_px = x == std::string::npos ? 0 : side(text.substr(0, x));
+    const int height_px = x == std::string::npos ? 0 : side(text.substr(x + 1));
+    if (std::min(width_px, height_px) >= 1 && std::max(width_px, height_px) <= 16384)
+        job.width_px = width_px, job.height_px = height_px;
+    else diagnostics.error(place_of("--size", text), "a size is WIDTHxHEIGHT, sides from 1 to 16384 px");
 }
 
 void read_texture_space(const RenderArguments& options, const scene::Scene& scene, scene::Job& job,

@@ -204,7 +204,8 @@ OutputOptions output_options(const RunArguments& options) {
     outputs.keep_channels = options.keep_channels;
     outputs.crop_to_display = options.crop == "display";
     outputs.compression = options.compression;
-    outputs.look = options.look;
+    // Its folder is no part of the picture: files of a farm are those of one run, byte for byte.
+    outputs.look = std::filesystem::path(options.look).filename().string();
     outputs.telemetry = options.telemetry;
     for (const std::string& tap : options.pipeline.taps) {
         const std::size_t equals = tap.find('=');

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -14,6 +15,8 @@
 #include "cli/telemetry_plot.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/data_path.h"
+#include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
 #include "framework/base/text.h"
 #include "framework/gpu/timer.h"
 #include "framework/render/trace.h"
@@ -48,20 +51,22 @@ class ReportFile {
 public:
     ReportFile(const RunSession& session, const std::vector<int>& current)
         : session_(session), current_(current) {}
-    ~ReportFile() {
-        if (session_.arguments.jobs.report.empty()) return;
+
+    /// Does the work and writes the report of it. Throws what the work throws, and where the report of
+    /// work without a fault cannot be written.
+    ExitCode of(const std::function<ExitCode()>& work) {
         try {
-            const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
-            write_text_file(session_.arguments.jobs.report,
-                            report_json({session_.arguments.look, session_.arguments.capture.capture,
-                                         frame_events(session_.run, outcomes_, current_), taken.count(),
-                                         code_, renderer_, hardware_fault_, error_}));
-        } catch (const Error& error) {
-            std::cerr << printable_lines(error.what()) << "\n";
+            code_ = work();
+        } catch (const std::exception& error) {
+            const auto* own = dynamic_cast<const Error*>(&error);
+            code_ = own ? own->exit_code() : is_out_of_memory(error) ? ExitCode::memory : ExitCode::effect;
+            error_ = error.what();
+            write();
+            throw;
         }
+        write();
+        return code_;
     }
-    ReportFile(const ReportFile&) = delete;
-    ReportFile& operator=(const ReportFile&) = delete;
 
     /// Also says to the process that started this one, if any, where it is.
     RunObserver watched(RunObserver observer) {
@@ -76,27 +81,34 @@ public:
         observer.object_seen = [this](const ObjectSighting& sighting) { session_.status.write(sighting); };
         return observer;
     }
-    void ended(ExitCode code) { code_ = code; }
     RunReport run(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
-        try {
-            RunReport report = run_frames(setup, watched(observer), stop);
-            report.frames_current = int(current_.size());
-            ended(report.exit_code());
-            if (!report.gl.renderer.empty()) renderer_ = renderer_text(report.gl);
-            hardware_fault_ = report.gl.hardware_fault;
-            return report;
-        } catch (const Error& error) {
-            ended(error.exit_code());
-            error_ = error.what();
-            throw;
-        }
+        RunReport report = run_frames(setup, watched(observer), stop);
+        report.frames_current = int(current_.size());
+        if (!report.gl.renderer.empty()) renderer_ = renderer_text(report.gl);
+        hardware_fault_ = report.gl.hardware_fault;
+        return report;
     }
 
 private:
+    /// Where it cannot, an earlier fault keeps its code.
+    void write() const {
+        if (session_.arguments.jobs.report.empty()) return;
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
+        try {
+            write_text_file(session_.arguments.jobs.report,
+                            report_json({session_.arguments.look, session_.arguments.capture.capture,
+                                         frame_events(session_.run, outcomes_, current_), taken.count(),
+                                         code_, renderer_, hardware_fault_, error_}));
+        } catch (const Error& error) {
+            if (code_ == ExitCode::done) throw;
+            std::cerr << printable_lines(error.what()) << "\n";
+        }
+    }
+
     const RunSession& session_;
     const std::vector<int>& current_;
     std::vector<FrameOutcome> outcomes_;
-    ExitCode code_ = ExitCode::effect;  // of an error
+    ExitCode code_ = ExitCode::effect;
     std::string renderer_;
     std::string hardware_fault_;
     std::string error_;  // its message
@@ -113,32 +125,34 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
     RunReporter reporter(session.progress, int(run.frames.size()), run.warmup_frames,
                          session.arguments.verbose);
     ReportFile report_file(session, current);
-    const RunReport report =
-        report_file.run({session.context, pipeline, session.sequence, session.reader, settings,
-                         session.outputs, data_path(), hooks, session.end_context},
-                        reporter.observer(), stop);
-    if (!report.gl.hardware_fault.empty() && has_gpu_device())
-        reporter.warn(
-            "this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
-            "software: " +
-            report.gl.hardware_fault + " (--backend egl refuses such a run)");
-    // Of several workers each sees only a part of the frames.
-    if (!session.arguments.jobs.is_worker())
-        for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
-    reporter.print_summary(report);
-    if (session.outputs.stream && !report.failures.empty())
-        std::cerr
-            << "-o -: the stream ends before frame " << report.failures.front().frame
-            << ", since a gap would shift the frames behind it; --missing hold repeats a frame where the "
-               "file of the next one is not there\n";
-    if (settings.trace) write_text_file(session.arguments.trace, trace.json());
-    write_extras(session.arguments, report);
-    if (report.interrupted && !session.arguments.watch && !session.arguments.jobs.is_worker())
-        print_interruption(
-            session.progress, session.arguments,
-            {report.frames_done + report.frames_current,
-             int(session.run.frames.size()) - session.run.warmup_frames, false, pipeline.has_history()});
-    return report.exit_code();
+    return report_file.of([&] {
+        const RunReport report =
+            report_file.run({session.context, pipeline, session.sequence, session.reader, settings,
+                             session.outputs, data_path(), hooks, session.end_context},
+                            reporter.observer(), stop);
+        if (!report.gl.hardware_fault.empty() && has_gpu_device())
+            reporter.warn(
+                "this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
+                "software: " +
+                report.gl.hardware_fault + " (--backend egl refuses such a run)");
+        // Of several workers each sees only a part of the frames.
+        if (!session.arguments.jobs.is_worker())
+            for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);
+        reporter.print_summary(report);
+        if (session.outputs.stream && !report.failures.empty())
+            std::cerr
+                << "-o -: the stream ends before frame " << report.failures.front().frame
+                << ", since a gap would shift the frames behind it; --missing hold repeats a frame where the "
+                   "file of the next one is not there\n";
+        if (settings.trace) write_text_file(session.arguments.trace, trace.json());
+        write_extras(session.arguments, report);
+        if (report.interrupted && !session.arguments.watch && !session.arguments.jobs.is_worker())
+            print_interruption(
+                session.progress, session.arguments,
+                {report.frames_done + report.frames_current,
+                 int(session.run.frames.size()) - session.run.warmup_frames, false, pipeline.has_history()});
+        return report.exit_code();
+    });
 }
 
 /// Which files there are to watch is known only after a look is bound, so it is bound twice. nullopt where
@@ -195,8 +209,7 @@ ExitCode render_stale(const RunSession& session, const BoundLook& bound, const s
                                             is_rendered = true;
                                             return render(session, run, bound.pipeline, stop, hooks, current);
                                         });
-    if (!is_rendered) ReportFile(session, current).ended(code);
-    return code;
+    return is_rendered ? code : ReportFile(session, current).of([code] { return code; });
 }
 
 ExitCode watch(const RunSession& session, WatchedLook look, const std::atomic<bool>& stop) {

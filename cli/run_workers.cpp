@@ -113,6 +113,18 @@ std::vector<std::string> worker_command(const RunArguments& arguments, const Job
     return command;
 }
 
+/// What a worker takes of the address space before its first frame: the program itself, and what
+/// gpu::Context requires. Below that, libraries crash as they are loaded.
+constexpr std::uint64_t kMiB = 1024 * 1024, kLeastWorkerBytes = (40 + 320) * kMiB;
+
+void require_room_for_a_worker(std::uint64_t limit) {
+    if (limit < kLeastWorkerBytes)
+        throw Error(ExitCode::memory,
+                    fmt::format("out of memory: --max-memory {} is too little for a worker; "
+                                "write --max-memory {}MB or more",
+                                limit, kLeastWorkerBytes / kMiB));
+}
+
 /// Killed workers leave temporary files, and their lines in the locks of the outputs. A lock of the same
 /// frames takes these away. Where another run holds one, that run will.
 void clear_after_workers(const RunArguments& arguments, const std::vector<int>& frames) {
@@ -161,7 +173,10 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     };
     if (arguments.jobs.frame_timeout_s > 0)
         options.frame_timeout = std::chrono::duration<double>(arguments.jobs.frame_timeout_s);
-    if (arguments.jobs.memory_bytes > 0) options.memory_bytes = arguments.jobs.memory_bytes;
+    if (arguments.jobs.memory_bytes > 0) {
+        require_room_for_a_worker(arguments.jobs.memory_bytes);
+        options.memory_bytes = arguments.jobs.memory_bytes;
+    }
     options.pass_limit = arguments.plugins.pass_limit();
     if (pipeline.has_foreign()) options.resident_bytes = foreign_memory_bytes() / options.pieces.size();
     options.stop_on_error = arguments.jobs.stop_on_error;
@@ -177,15 +192,15 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     clear_after_workers(arguments, written);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     reporter.finish(report, options.pieces.size(), seconds);
-    if (!arguments.jobs.report.empty())
-        write_text_file(arguments.jobs.report,
-                        report_json({arguments.look, arguments.capture.capture, report.frames, seconds,
-                                     report.exit_code, "", "", report.error}));
     if (report.interrupted)
         print_interruption(
             progress, arguments,
             {count_outcome(report.frames, "done") + count_outcome(report.frames, "current"),
              int(report.frames.size()), count_outcome(report.frames, "not run") == 0, frames.has_history});
+    if (!arguments.jobs.report.empty())
+        write_text_file(arguments.jobs.report,
+                        report_json({arguments.look, arguments.capture.capture, report.frames, seconds,
+                                     report.exit_code, "", "", report.error}));
     return report.exit_code;
 }
 

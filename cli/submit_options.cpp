@@ -4,7 +4,9 @@
 #include <array>
 #include <filesystem>
 
+#include "cli/number_options.h"
 #include "framework/batch/farm_files.h"
+#include "framework/batch/farm_job.h"
 
 namespace aftershade::cli {
 
@@ -33,8 +35,8 @@ void add_resource_options(CLI::App& app, SubmitArguments& options) {
     app.add_option("--cpus", options.cpus, "CPU cores per task")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
-    app.add_option("--memory", options.memory_bytes, "Memory per task, such as 4GB (default: the farm's)")
-        ->transform(CLI::AsSizeValue(false));
+    takes_bytes(app.add_option("--memory", options.memory_bytes,
+                               "Memory per task, such as 4GB (default: the farm's)"));
     app.add_option("--time", options.minutes, "Time limit per task, in minutes (default: the farm's)")
         ->check(CLI::Range(1, 1'000'000));
     app.add_option("--retries", options.retries, "How often to retry a failed task")

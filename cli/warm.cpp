@@ -16,9 +16,11 @@
 #include "cli/verbs.h"
 #include "framework/base/cores.h"
 #include "framework/base/data_path.h"
+#include "framework/base/error.h"
 #include "framework/base/scratch_folder.h"
 #include "framework/base/status.h"
 #include "framework/effect/program_store.h"
+#include "framework/gpu/driver_cache.h"
 #include "framework/look/look.h"
 #include "framework/run/run_frames.h"
 
@@ -67,6 +69,8 @@ ExitCode warm(const WarmOptions& options) {
                           "the cache is off; set the variable to a folder, or leave it unset");
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
+    for (const std::string& fault : {store.fault(), gpu::prepare_driver_cache()})
+        if (!fault.empty()) throw Error(ExitCode::output, "nothing can be cached: " + fault);
     if (const auto code = run_in_worker(options.plugins, pipeline.has_foreign())) return *code;
 
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);

@@ -27,20 +27,15 @@ namespace {
 
 constexpr std::uint64_t kMiB = 1024 * 1024;
 constexpr std::string_view kRemedy =
-    "raise the limit (ulimit -v), free memory, or run less at once (--scale 1/2, --region)";
+    "raise the limit (ulimit -v, ulimit -d), free memory, or run less at once (--scale 1/2, --region)";
 /// A crash with less than this left is put down to memory: a thread's stack takes 8 MiB, and what Mesa asks
 /// for at once seldom more than this.
 constexpr std::uint64_t kNearLimit = 64 * kMiB;
 
-std::optional<std::uint64_t> address_space_limit() {
-    rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
-    return limit.rlim_cur;
-}
-
-/// The pages of a process: all of its address space, and those in memory (proc(5), statm).
+/// The pages of a process: all of its address space, those in memory, and its data with its stacks (proc(5),
+/// statm).
 struct Pages {
-    std::uint64_t taken = 0, resident = 0;
+    std::uint64_t taken = 0, resident = 0, data = 0;
 };
 
 /// Safe in a signal handler. Zeros where the file is not there.
@@ -50,19 +45,40 @@ Pages pages_of(const char* statm) {
     if (file < 0) return {};
     const ssize_t count = read(file, text.data(), text.size() - 1);
     close(file);
-    Pages pages;
+    std::array<std::uint64_t, 6> columns{};
     const char* const end = text.data() + (count > 0 ? count : 0);
-    const char* const blank = std::from_chars(text.data(), end, pages.taken).ptr;
-    if (blank < end) std::from_chars(blank + 1, end, pages.resident);
-    return pages;
+    const char* at = text.data();
+    for (std::uint64_t& column : columns)
+        if (at < end) at = std::from_chars(at, end, column).ptr + 1;
+    return {columns[0], columns[1], columns[5]};
 }
 
 std::uint64_t page_bytes() {
     return std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
-std::uint64_t address_space_taken() {
-    return pages_of("/proc/self/statm").taken * page_bytes();
+struct Room {
+    std::uint64_t limit = 0, left = 0;
+    const char* of = "";
+};
+
+/// The tighter of the limits of the address space and of data: what the program asks for counts in both.
+/// Safe in a signal handler.
+std::optional<Room> room_left() {
+    std::optional<Room> least;
+    rlimit limit{};
+    const auto look = [&](std::uint64_t pages, const char* of) {
+        const std::uint64_t taken = pages * page_bytes();
+        const Room room{limit.rlim_cur, limit.rlim_cur > taken ? limit.rlim_cur - taken : 0, of};
+        if (!least || room.left < least->left) least = room;
+    };
+    const auto is_limited = [&](auto resource) {
+        return getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+    };
+    const Pages pages = pages_of("/proc/self/statm");
+    if (is_limited(RLIMIT_AS)) look(pages.taken, "address space");
+    if (is_limited(RLIMIT_DATA)) look(pages.data, "data");
+    return least;
 }
 
 /// Safe in a signal handler, so without fmt and without a buffer of stdio.
@@ -75,7 +91,7 @@ std::uint64_t address_space_taken() {
 
 void on_crash(int signal_number) {
     if (const auto left = address_space_left(); left && *left < kNearLimit)
-        end_for_memory("a library crashed where the limit of the address space is reached");
+        end_for_memory("a library crashed where the limit of memory is reached");
     // Back in the faulting code the signal comes again, with its default action (SA_RESETHAND).
     raise(signal_number);
 }
@@ -138,10 +154,8 @@ std::string out_of_memory_text(const std::exception& error) {
 }
 
 std::optional<std::uint64_t> address_space_left() {
-    const auto limit = address_space_limit();
-    if (!limit) return std::nullopt;
-    const std::uint64_t taken = address_space_taken();
-    return *limit > taken ? *limit - taken : 0;
+    const auto room = room_left();
+    return room ? std::optional(room->left) : std::nullopt;
 }
 
 std::uint64_t resident_bytes(int process) {
@@ -158,12 +172,12 @@ std::uint64_t machine_memory_bytes() {
 }
 
 void require_address_space(std::uint64_t bytes, const std::string& what) {
-    const auto left = address_space_left();
-    if (!left || *left >= bytes) return;
+    const auto room = room_left();
+    if (!room || room->left >= bytes) return;
     throw Error(ExitCode::memory, "out of memory: " + what + " needs " + std::to_string(bytes / kMiB) +
-                                      " MiB of address space, and the limit of " +
-                                      std::to_string(*address_space_limit() / kMiB) + " MiB leaves " +
-                                      std::to_string(*left / kMiB) + " MiB: " + std::string(kRemedy));
+                                      " MiB of " + room->of + ", and the limit of " +
+                                      std::to_string(room->limit / kMiB) + " MiB leaves " +
+                                      std::to_string(room->left / kMiB) + " MiB: " + std::string(kRemedy));
 }
 
 void share_one_heap() {
@@ -172,10 +186,10 @@ void share_one_heap() {
 
 void prepare_for_memory_limit() {
     std::set_terminate(on_terminate);
-    const auto limit = address_space_limit();
-    if (!limit) return;
+    const auto room = room_left();
+    if (!room) return;
     share_one_heap();
-    limit_llvmpipe(*limit);
+    limit_llvmpipe(room->limit);
     watch_crashes();
 }
 

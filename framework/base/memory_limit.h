@@ -15,7 +15,8 @@ bool is_out_of_memory(const std::exception& error);
 /// "out of memory (...): what to do".
 std::string out_of_memory_text(const std::exception& error);
 
-/// Bytes of address space that this process may still take; nullopt without a limit (RLIMIT_AS).
+/// Bytes of address space that this process may still take; nullopt without a limit. Data
+/// counts as address space where it has a limit (RLIMIT_AS, RLIMIT_DATA).
 std::optional<std::uint64_t> address_space_left();
 
 /// Memory that a process really uses; 0 where it is gone or /proc is not there.
@@ -27,11 +28,11 @@ std::uint64_t machine_memory_bytes();
 /// "OpenGL".
 void require_address_space(std::uint64_t bytes, const std::string& what);
 
-/// At the start of main. Where the address space is limited, malloc keeps to one arena: each other one
-/// reserves 64 MiB for a thread, which are never used here. llvmpipe gets as many threads as there is room
-/// for, unless LP_NUM_THREADS says how many. A crash in a library that does not check what malloc gave it,
-/// and an exception that ends a thread, then end the process with ExitCode::memory and a message, if memory
-/// is what was missing.
+/// At the start of main. Where the address space or data is limited, malloc keeps to one arena: each other
+/// one reserves 64 MiB for a thread, which are never used here. llvmpipe gets as many threads as there is
+/// room for, unless LP_NUM_THREADS says how many. A crash in a library that does not check what malloc gave
+/// it, and an exception that ends a thread, then end the process with ExitCode::memory and a message, if
+/// memory is what was missing.
 void prepare_for_memory_limit();
 
 /// For a program that runs for hours: what one thread frees, the others use again. Otherwise glibc gives

@@ -71,6 +71,31 @@ std::string out_of_bounds(const fs::path& file, const fs::path& folder) {
            target.string() + " (move it there, or allow its folder with --allow-path)";
 }
 
+bool has_detour(const fs::path& file, std::vector<fs::path> folders) {
+    const auto normal = [](const fs::path& path) {
+        const fs::path result = path.lexically_normal();
+        return result.has_filename() ? result : result.parent_path();
+    };
+    std::error_code failure;
+    for (const fs::path& allowed : allowed_folders()) folders.push_back(allowed);
+    for (std::size_t i = 0, count = folders.size(); i < count; ++i) {
+        if (folders[i].empty()) folders[i] = ".";
+        folders.push_back(resolved_path(folders[i]));
+        folders[i] = normal(fs::absolute(folders[i], failure));
+    }
+    const auto is_known = [&](const fs::path& place) {
+        return std::ranges::any_of(folders, [&](const fs::path& folder) {
+            return lies_in(place, folder) || lies_in(folder, place);
+        });
+    };
+    fs::path before;
+    for (const fs::path& part : fs::absolute(file, failure)) {
+        if (part == ".." && !(is_known(normal(before)) && is_known(resolved_path(before)))) return true;
+        before /= part;
+    }
+    return false;
+}
+
 std::vector<fs::path> allowed_folders() {
     const char* const text = std::getenv(kVariable);
     std::vector<fs::path> folders;

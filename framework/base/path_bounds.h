@@ -14,6 +14,10 @@ namespace aftershade {
 /// ...".
 std::string out_of_bounds(const std::filesystem::path& file, const std::filesystem::path& folder);
 
+/// Whether `file` goes up ("..") from a folder that is neither in one of `folders` or of the allowed ones,
+/// nor around one, with links followed. Whether such a file is found depends on whether that folder exists.
+bool has_detour(const std::filesystem::path& file, std::vector<std::filesystem::path> folders);
+
 /// While it lives, what this thread reads may name only those files of which `why_not` says "": a rule for
 /// documents that come from elsewhere than the disk. Without one every file may be named.
 class FileRule {

@@ -54,6 +54,7 @@ public:
         const std::lock_guard lock(mutex_);
         if (code == ExitCode::done || ends_the_run(worst_)) return;
         worst_ = code;
+        if (!error.empty()) last_error_ = error;
         if (!ends_the_run(code)) return;
         stop_ = true;
         error_ = error;
@@ -94,6 +95,11 @@ public:
             report.exit_code = done > 0                                                  ? ExitCode::partial
                                : worst_ == ExitCode::done || worst_ == ExitCode::partial ? ExitCode::capture
                                                                                          : worst_;
+        else if (worst_ == ExitCode::effect || worst_ == ExitCode::memory) {
+            // A worker that ends badly after its frames.
+            report.exit_code = worst_;
+            report.error = last_error_;
+        }
         return report;
     }
 
@@ -104,7 +110,8 @@ private:
     std::map<int, FrameEvent> frames_;
     std::atomic<bool> stop_ = false;
     ExitCode worst_ = ExitCode::done;
-    std::string error_;
+    std::string error_;       // of what ended the run
+    std::string last_error_;  // of a worker
     std::exception_ptr failure_;
 };
 
@@ -139,15 +146,21 @@ private:
         WorkerResult result = run_worker(command, listener(watchdog), &watchdog.flag());
         if (watchdog.barked()) {
             if (watchdog.barked_at_pass()) result.status = watchdog.status_at_bark();
-            board_.ended(ExitCode::effect);
-            return cost_a_frame(result.status, describe_timeout(result, watchdog.timeout()));
+            const std::string why = describe_timeout(result, watchdog.timeout());
+            if (first_unfinished() == piece_.frames.size()) board_.error(kErrorPrefix + why);
+            board_.ended(ExitCode::effect, why);
+            return cost_a_frame(result.status, why);
         }
         if (result.end == WorkerEnd::interrupted) return false;
+        const bool has_seen_all = first_unfinished() == piece_.frames.size();
+        if (last_error_.empty() && has_seen_all && result.end != WorkerEnd::exited) {
+            last_error_ = describe(result) + " after its frames";
+            board_.error(kErrorPrefix + last_error_);
+        }
         board_.ended(result.end == WorkerEnd::exited          ? ExitCode(result.exit_code)
                      : result.end == WorkerEnd::out_of_memory ? ExitCode::memory
                                                               : ExitCode::effect,
                      last_error_);
-        const bool has_seen_all = first_unfinished() == piece_.frames.size();
         if (result.end == WorkerEnd::exited && (has_seen_all || ends_the_run(ExitCode(result.exit_code))))
             return false;
         return cost_a_frame(result.status, last_error_.empty() ? describe(result) : last_error_);

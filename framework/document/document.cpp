@@ -91,6 +91,11 @@ public:
         node.kind = Node::Kind::string;
         node.place = place(string_start(offset() - 1));
         node.string = value;
+        // A path would end there for the system, and not for who looks at it.
+        if (value.find('\0') != std::string::npos) {
+            diagnostics_.error(node.place, "a text holds no zero byte (\\u0000)");
+            return false;
+        }
         return add(std::move(node));
     }
     bool binary(binary_t&) override { return false; }

@@ -1,6 +1,9 @@
 #include "framework/effect/program_store.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -72,8 +75,8 @@ ProgramStore ProgramStore::from_environment() {
         return std::strcmp(folder, "off") == 0 ? ProgramStore() : ProgramStore(fs::path(folder));
     // The XDG base directory specification has relative paths ignored.
     if (const char* cache = environment("XDG_CACHE_HOME"); cache && fs::path(cache).is_absolute())
-        return ProgramStore(fs::path(cache) / "aftershade");
-    if (const char* home = environment("HOME")) return ProgramStore(fs::path(home) / ".cache" / "aftershade");
+        return {fs::path(cache), "aftershade"};
+    if (const char* home = environment("HOME")) return {fs::path(home) / ".cache", "aftershade"};
     return {};
 }
 
@@ -84,7 +87,7 @@ fs::path ProgramStore::file_of(const std::string& key) const {
 std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) const {
     if (!is_on()) return std::nullopt;
     std::string fault;
-    const std::string text = read_file_below(folder_, file_of(key).filename(), kMaxFileBytes, fault);
+    const std::string text = read_file_below(named_, below_ / file_of(key).filename(), kMaxFileBytes, fault);
     Taker taker{text};
     if (taker.bytes(kMagic.size()) != kMagic || taker.bytes(taker.number()) != key) return std::nullopt;
     gpu::ProgramBinary binary;
@@ -96,6 +99,23 @@ std::optional<gpu::ProgramBinary> ProgramStore::load(const std::string& key) con
     binary.bytes.resize(bytes.size());
     std::memcpy(binary.bytes.data(), bytes.data(), bytes.size());
     return binary;
+}
+
+void ProgramStore::make_folder() const {
+    std::error_code failure;
+    fs::create_directories(named_, failure);
+    make_folder_below(named_, below_);
+}
+
+std::string ProgramStore::fault() const {
+    try {
+        make_folder();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    if (access(folder_.c_str(), W_OK | X_OK) == 0) return "";
+    return folder_.string() + ": cannot be written: " + std::strerror(errno) +
+           " (choose another folder with AFTERSHADE_CACHE)";
 }
 
 void ProgramStore::make_room() const {
@@ -128,10 +148,9 @@ void ProgramStore::make_room() const {
 
 void ProgramStore::save(const std::string& key, const gpu::ProgramBinary& binary) const {
     if (!is_on()) return;
-    std::error_code failure;
-    fs::create_directories(folder_, failure);
     try {
-        AtomicFile file(path_below(folder_, file_of(key).filename()));
+        make_folder();
+        AtomicFile file(path_below(named_, below_ / file_of(key).filename()));
         const std::string text = file_text(key, binary);
         std::ofstream out(file.temporary_path(), std::ios::binary);
         out.write(text.data(), static_cast<std::streamsize>(text.size()));

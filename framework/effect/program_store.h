@@ -22,13 +22,18 @@ public:
     ProgramStore() = default;
     /// Makes the folder with the first program that it keeps.
     explicit ProgramStore(std::filesystem::path folder, std::uint64_t max_bytes = kMaxBytes)
-        : folder_(std::move(folder)), max_bytes_(max_bytes) {}
+        : named_(folder), folder_(std::move(folder)), max_bytes_(max_bytes) {}
+    /// `named` / `below`; where `below` is a link, nothing is kept.
+    ProgramStore(std::filesystem::path named, const std::filesystem::path& below)
+        : named_(std::move(named)), below_(below), folder_(named_ / below) {}
     /// $AFTERSHADE_CACHE, which may be "off"; else $XDG_CACHE_HOME/aftershade; else ~/.cache/aftershade.
     static ProgramStore from_environment();
     static constexpr std::uint64_t kMaxBytes = std::uint64_t(256) << 20;
 
     bool is_on() const { return !folder_.empty(); }
     const std::filesystem::path& folder() const { return folder_; }
+    /// Makes the folder. What keeps programs from being kept in it, with the remedy; "" where nothing does.
+    std::string fault() const;
     /// The key is all that the program depends on: sources, renderer, versions.
     std::optional<gpu::ProgramBinary> load(const std::string& key) const;
     void save(const std::string& key, const gpu::ProgramBinary& binary) const;
@@ -37,7 +42,11 @@ public:
 private:
     void make_room() const;
 
-    std::filesystem::path folder_;  // empty: off
+    /// Throws Error where it cannot be, or is a link below what the user named.
+    void make_folder() const;
+
+    std::filesystem::path named_, below_;
+    std::filesystem::path folder_;  // both; empty: off
     std::uint64_t max_bytes_ = kMaxBytes;
 };
 

@@ -1,9 +1,16 @@
 // Mesa's cache of machine code, which it writes behind its caller's back.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace aftershade::gpu {
+
+/// Before Mesa first looks for its cache, where it will look: it would write through links, and end the
+/// process where its index, a sparse file that it maps, finds no room. What keeps Mesa from having a cache,
+/// with the remedy; the process then runs without one (MESA_SHADER_CACHE_DISABLE). "" where nothing does, or
+/// the user wants none. The first call does the work. [any thread]
+const std::string& prepare_driver_cache();
 
 /// Whether a thread is one that writes Mesa's cache ("aftersh:disk$0") and has work, by its /proc/.../stat.
 bool is_writing_driver_cache(std::string_view stat);

@@ -4,12 +4,14 @@
 
 #include "framework/base/memory_limit.h"
 #include "framework/gpu/backend.h"
+#include "framework/gpu/driver_cache.h"
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/osmesa_platform.h"
 
 namespace aftershade::gpu {
 
 std::unique_ptr<Platform> make_platform(Backend backend) {
+    prepare_driver_cache();
     if (backend == Backend::osmesa) return make_osmesa_platform();
     return make_egl_platform(backend == Backend::egl_software ? Renderer::software : Renderer::hardware);
 }

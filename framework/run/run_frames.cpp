@@ -313,7 +313,11 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
     };
     try {
         if (!setup.options.history_in.empty()) renderer->load_history(setup.options.history_in);
-        return FrameLoop(setup, context, *renderer, loader, observer, end_gl).run(stop);
+        RunReport report = FrameLoop(setup, context, *renderer, loader, observer, end_gl).run(stop);
+        renderer.reset();
+        NativeRegistry* const natives = setup.options.natives.registry;
+        if (natives && report.exit_code() == ExitCode::done) natives->require_ends();
+        return report;
     } catch (const std::exception& error) {
         if (renderer && is_out_of_memory(error)) context.abandon();  // before the renderer goes
         throw;

@@ -59,10 +59,18 @@ std::string LookModel::why_not(const std::filesystem::path& file) const {
     if (is_shader_name(resolved))
         return "is a shader, which pages can write, so that a look cannot read anything else from it (give "
                "the file another ending)";
+    if (named_on_disk_.contains(file)) return "";
+    std::vector<std::filesystem::path> folders(folders_.begin(), folders_.end());
+    folders.push_back(path_.parent_path());
+    // Nothing of what lies elsewhere, such as where its links lead, goes to the page.
+    if (has_detour(file, folders))
+        return "goes through a folder outside those that a page may read (leave the detour out, or allow the "
+               "folder with --allow-path)";
     if (named_on_disk_.contains(resolved)) return "";
-    for (const auto& folder : folders_)
+    for (const auto& folder : folders)
         if (out_of_bounds(file, folder).empty()) return "";
-    return out_of_bounds(file, path_.parent_path());
+    return "lies outside the folders that a page may read: those of the look, the capture and the effects "
+           "(move it there, or allow its folder with --allow-path)";
 }
 
 /// A text on disk is of who has the disk, and not of a page: its files may be named from then on.
@@ -70,7 +78,7 @@ LookModel::Binding LookModel::binding_of(const std::string& text, Origin origin)
     Binding binding;
     std::vector<std::string> files;
     const FileRule rule([&](const std::filesystem::path& file) {
-        if (origin == Origin::disk) named_on_disk_.insert(resolved_path(file));
+        if (origin == Origin::disk) named_on_disk_.insert({file, resolved_path(file)});
         std::string reason = why_not(file);
         if (reason.empty()) files.push_back(resolved_path(file).string());
         else if (binding.refused.empty()) binding.refused = "'" + file.string() + "' " + reason;

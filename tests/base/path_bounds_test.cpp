@@ -28,6 +28,22 @@ TEST(PathBounds, HoldWithLinksFollowed) {
     EXPECT_EQ(out_of_bounds(fs::current_path() / "f", ""), "") << "the working folder";
 }
 
+TEST(PathBounds, KnowNamesThatTellWhatIsElsewhere) {
+    const TemporaryFolder folder, other;
+    fs::create_directories(folder / "own/below");
+    fs::create_directory(other / "there");
+    fs::create_directory_symlink(other.path(), folder / "own/link");
+    const fs::path own = folder / "own";
+    for (const fs::path& name : {own / "f", own / "below/../f", own / "../own/f", own / "../../x/f",
+                                 own / "absent/../f", folder / "f", other / "f"})
+        EXPECT_FALSE(has_detour(name, {own})) << name;
+    for (const char* name : {"there", "absent"}) {
+        EXPECT_TRUE(has_detour(other / name / ".." / ".." / "f", {own})) << name;
+        EXPECT_TRUE(has_detour(own / "link" / name / ".." / "f", {own})) << name;
+        EXPECT_FALSE(has_detour(other / name / ".." / "f", {own, other.path()})) << name;
+    }
+}
+
 TEST(PathBounds, HoldAFileToItsOwnFolderWhereverThatLeads) {
     const TemporaryFolder folder;
     fs::create_directories(folder / "real/below");

@@ -157,6 +157,18 @@ TEST(RunJobs, HistoryIsWarmedUpBehindAFailedFrame) {
     EXPECT_EQ(warm, "warm 3,warm 4,");
 }
 
+TEST(RunJobs, AWorkerThatCrashesAfterItsLastFrameMakesNoRunSucceed) {
+    std::string said;
+    JobListener listener;
+    listener.on_stderr = [&](std::string_view line) { said += line; };
+    const JobsReport report = run_jobs(
+        jobs_of_script("done_; if [ $f = 3 ]; then kill -SEGV $$; fi", {{{1, 2, 3}}}), listener, kGoOn);
+    EXPECT_EQ(outcomes(report), (Outcomes{{1, "done"}, {2, "done"}, {3, "done"}}));
+    EXPECT_EQ(report.exit_code, ExitCode::effect);
+    EXPECT_EQ(said, "aftershade: error: " + report.error);
+    EXPECT_NE(said.find("SIGSEGV"), std::string::npos) << said;
+}
+
 TEST(RunJobs, AnErrorThatNoFrameEscapesEndsTheRun) {
     const auto fails_with = [](int code) {
         return run_jobs(jobs_of_script("exit " + std::to_string(code), {{{1, 2, 3}}, {{4, 5, 6}}}), {},

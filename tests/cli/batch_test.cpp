@@ -30,6 +30,55 @@ TEST_F(Batch, AMissingFrameOfAPatternIsAnErrorThatNamesIt) {
         EXPECT_TRUE(says(result, "aftershade: error: " + std::string(name) + "\\.exr: ")) << result.err;
 }
 
+TEST_F(Batch, AReportThatCannotBeWrittenIsAnOutputThatCannotBeWritten) {
+    write_frames(1, 2);
+    const auto full = [&](const std::vector<std::string>& more, ExitCode code) {
+        std::vector<std::string> words{"nothing.json", "in_####.exr", "-o",         "out_####.exr",
+                                       "--report",     "/dev/full",   "--overwrite"};
+        words.insert(words.end(), more.begin(), more.end());
+        const CommandResult result = run(words, int(code));
+        EXPECT_TRUE(says(result, "/dev/full: .*No space left on device")) << result.err;
+    };
+    full({}, ExitCode::output);
+    full({"--jobs", "2"}, ExitCode::output);
+    write_text(frame_path(2), "");
+    full({}, ExitCode::partial);
+}
+
+TEST_F(Batch, TheReportOfARunWhoseTraceCannotBeWrittenSaysSo) {
+    write_frames(1, 1);
+    fs::create_symlink("/dev/full", folder_ / "trace.json");
+    run({"nothing.json", "in_####.exr", "-o", "out_####.exr", "--report", "report.json", "--trace",
+         "trace.json"},
+        int(ExitCode::output));
+    const auto report = nlohmann::json::parse(read_text(folder_ / "report.json"));
+    EXPECT_EQ(report["exit_code"], 6);
+    EXPECT_NE(report.value("error", "").find("/dev/full"), std::string::npos) << report;
+}
+
+TEST_F(Batch, AWarmupIsNotMeasuredOnFramesThatCannotBeRead) {
+    write_frames(1, 4);
+    const std::vector<std::string> words{"check",         "trail.json", "--warmup",  "in_####.exr",
+                                         "--effect-path", "effects",    "--backend", "software"};
+    const CommandResult sound = run_aftershade(words, folder_.path());
+    EXPECT_NE(sound.out.find("against all 3 before it"), std::string::npos) << sound.err;
+    fs::resize_file(frame_path(2), fs::file_size(frame_path(2)) / 2);
+    const CommandResult result = run_aftershade(words, folder_.path());
+    EXPECT_EQ(result.exit_code, int(ExitCode::capture)) << result.err;
+    EXPECT_TRUE(says(result, "in_0002.exr.*measured on frames that can all be read")) << result.err;
+}
+
+TEST_F(Batch, BytesDoNotHangOnHowTheLookIsNamed) {
+    write_frames(1, 1);
+    const auto bytes_of = [&](const std::string& look) {
+        run({look, "in_####.exr", "-o", "out_####.exr", "--overwrite", "--no-journal"}, 0);
+        return read_text(folder_ / "out_0001.exr");
+    };
+    const std::string bytes = bytes_of("nothing.json");
+    EXPECT_EQ(bytes_of("./nothing.json"), bytes);
+    EXPECT_EQ(bytes_of((folder_ / "nothing.json").string()), bytes);
+}
+
 TEST_F(Batch, AMissingFrameOfAPatternIsSkippedOrHeldWhereThatIsAskedFor) {
     write_frames(1, 3);
     fs::remove(frame_path(2));

@@ -172,6 +172,19 @@ TEST_F(Interruption, ASecondSignalEndsItAtOnce) {
     EXPECT_EQ(command.wait().exit_code, 128 + SIGTERM) << "by the signal, not by the exit after a frame";
 }
 
+TEST_F(Interruption, TheSameSignalTwiceAtOnceIsOneInterrupt) {
+    write_frames(1, 24, 480, 270);
+    Command command(aftershade_words(sequence("spread.json", {"--frames", "1-24"})), folder_.path());
+    ASSERT_TRUE(command.wait_for_lines(1));
+    for (int i = 0; i < 3; ++i) {
+        command.send(SIGTERM);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5 * i));
+    }
+    const CommandResult result = command.wait();
+    EXPECT_EQ(result.exit_code, 130) << "timeout(1) signals its child and then the group";
+    EXPECT_NE(result.err.find("to resume:"), std::string::npos) << result.err;
+}
+
 TEST_F(Interruption, KilledRunsLeaveTemporariesThatTheNextRunRemoves) {
     constexpr int kMostKills = 60;
     int kills = 0;

@@ -56,6 +56,24 @@ TEST_F(Merge, ListsTheFramesThatFailedAndExitsOne) {
     EXPECT_EQ(all()["exit_code"], 1);
 }
 
+TEST_F(Merge, FailsWhereARunEndedWithAnErrorUnlessALaterReportHasItsFrames) {
+    report("0001.json", frame(1, "done"));
+    write_text(
+        folder_ / "reports/0002.json",
+        R"({ "aftershade_report": 1, "exit_code": 6, "seconds": 1, "error": "history: disk \u001b full",
+                    "frames": [ { "frame": 2, "outcome": "done" } ] })");
+    const CommandResult result = merge({"reports"}, 1);
+    EXPECT_NE(result.err.find("0002.json: its run ended with exit code 6: history: disk ? full\n"),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(all()["exit_code"], 1);
+    EXPECT_NE(all()["error"].get<std::string>().find("exit code 6"), std::string::npos);
+    write_text(
+        folder_ / "again.json",
+        R"({ "aftershade_report": 1, "seconds": 1, "frames": [ { "frame": 2, "outcome": "done" } ] })");
+    merge({"reports", "again.json"}, 0);
+}
+
 TEST_F(Merge, NamesTheTasksThatHaveNoReportOrABrokenOne) {
     report("0001.json", frame(1, "done"));
     write_text(folder_ / "reports/0002.json", "{ \"aftershade_report\": 1, \"fra");

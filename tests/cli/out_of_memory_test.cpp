@@ -70,6 +70,23 @@ INSTANTIATE_TEST_SUITE_P(Of, MemoryLimit, testing::ValuesIn(limits()), [](const 
 
 class OutOfMemory : public BatchWork {};
 
+TEST_F(OutOfMemory, ALimitOfDataIsMetAsOneOfTheAddressSpace) {
+    if (!kCanLimit) GTEST_SKIP() << "the address sanitizer needs all of the address space";
+    write_frames(1, 1, 64, 36);
+    for (const int kilobytes : {3'000, 32'000, 64'000, 128'000, 256'000, 1'000'000}) {
+        const CommandResult result =
+            Command({"/bin/sh", "-c",
+                     "ulimit -c 0; ulimit -d " + std::to_string(kilobytes) + "; exec \"$0\" \"$@\"",
+                     AFTERSHADE_EXECUTABLE, "run", "nothing.json", "in_0001.exr", "-o", "out.exr",
+                     "--overwrite", "--backend", "software"},
+                    folder_.path())
+                .wait();
+        EXPECT_EQ(result.exit_code, kilobytes < 500'000 ? int(ExitCode::memory) : 0)
+            << kilobytes << result.err;
+        EXPECT_TRUE(result.exit_code == 0 || result.err.find("ulimit -d") != std::string::npos) << result.err;
+    }
+}
+
 TEST_F(OutOfMemory, AFrameThatDoesNotFitIsNoDamagedFile) {
     if (!kCanLimit) GTEST_SKIP() << "the address sanitizer needs all of the address space";
     write_frames(1, 1, 4096, 2160);  // 35 MB a channel

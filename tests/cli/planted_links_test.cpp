@@ -44,6 +44,9 @@ const std::vector<Planting>& plantings() {
     const std::vector<std::string> docs{"docs", "-o", "pages/effects"}, man{"docs", "--man", "pages/effects"};
     const std::vector<std::string> render{"render", "scene.json", "-o",    "rendered", "--frames",
                                           "1",      "--size",     "32x18", "--quiet"};
+    const std::vector<std::string> one = run_words({"--frames", "1"});
+    const Environment fresh{{"AFTERSHADE_CACHE", "fresh"}};
+    const Environment home{{"AFTERSHADE_CACHE", ""}, {"XDG_CACHE_HOME", ""}, {"HOME", "home"}};
     static const std::vector<Planting> all{
         {"out/.aftershade", To::folder, run},
         {"out/.aftershade", To::absent, run},
@@ -104,6 +107,19 @@ const std::vector<Planting>& plantings() {
          run_words({"--frames", "1"}),
          {{"AFTERSHADE_CACHE", "cache"}},
          false},  // compiles again
+        {"fresh/mesa_shader_cache", To::folder, one, fresh, false},
+        {"fresh/mesa_shader_cache", To::folder, {"doctor", "--json"}, fresh, false},
+        {"fresh/mesa_shader_cache/index", To::file, one, fresh, false},
+        {"fresh/mesa_shader_cache/index", To::absent, one, fresh, false},
+        {"fresh/mesa_shader_cache/index", To::second_name, one, fresh, false},
+        {"fresh/mesa_shader_cache/index", To::pipe, one, fresh, false},
+        {"fresh/mesa_shader_cache/index", To::file, {"doctor", "--json"}, fresh, false},
+        {"fresh/mesa_shader_cache/index",
+         To::file,
+         {"warm", "trail.json", "in_0001.exr", "--effect-path", "effects"},
+         fresh,
+         true},
+        {"home/.cache/aftershade", To::folder, one, home, false},
     };
     return all;
 }

@@ -130,6 +130,31 @@ TEST_F(Plugins, ThatExitOrThrowAreErrorsOfTheStep) {
     }
 }
 
+TEST_F(Plugins, ThatEndBadlyAfterTheLastFrameMakeNoRunAndNoCheckSucceed) {
+    for (const std::string id : {"aborts_last", "exits_last", "hangs_last"}) {
+        write_effect(id);
+        const std::vector<std::string> plugins{"--effect-path", "effects",          "--plugin-path",
+                                               kCases,          "--plugin-timeout", "1"};
+        for (const char* jobs : {"", "2"}) {
+            std::vector<std::string> words = plugins;
+            words.insert(words.end(), {"--overwrite", "--report", "report.json"});
+            if (*jobs) words.insert(words.end(), {"--jobs", jobs});
+            const CommandResult result = run(words, 5);
+            EXPECT_NE(result.err.find(id + ".so"), std::string::npos) << result.err;
+            EXPECT_NE(result.err.find("in destroy of step 'graded'"), std::string::npos) << result.err;
+            EXPECT_TRUE(fs::exists(folder_ / "out_0004.exr")) << "frames before it are whole";
+            const std::string report = read_text(folder_ / "report.json");
+            EXPECT_NE(report.find("\"exit_code\": 5"), std::string::npos) << report;
+            EXPECT_NE(report.find("in destroy"), std::string::npos) << report;
+        }
+        std::vector<std::string> check{"check", id, "--backend", "software"};
+        check.insert(check.end(), plugins.begin(), plugins.end());
+        const CommandResult checked = run_aftershade(check, folder_.path());
+        EXPECT_EQ(checked.exit_code, 1) << checked.err;
+        EXPECT_NE(checked.err.find("in destroy"), std::string::npos) << checked.err;
+    }
+}
+
 TEST_F(Plugins, AreNeverTakenFromBesideALook) {
     write_effect("older");
     fs::copy_file(kCases + "/older.so", folder_ / "older.so");

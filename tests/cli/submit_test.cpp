@@ -47,6 +47,15 @@ TEST_F(Submit, WritesNothingWhereTheRunOrTheJobHasFaultsAndListsThemAll) {
     EXPECT_FALSE(fs::exists(folder_ / "job"));
 }
 
+TEST_F(Submit, RefusesNamesThatTheFarmsJsonCannotHold) {
+    const CommandResult result = run_aftershade(
+        {"submit", "--to", "openjd", "nothing.json", "in_####.exr", "-o", "f_####.exr", "--folder", "\xff"},
+        folder_.path());
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(result.err.find("not UTF-8"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(folder_ / "\xff"));
+}
+
 TEST_F(Submit, RefusesAFolderThatHoldsAnotherJob) {
     submit("parallel", {"--history", "exact"});
     const CommandResult again = submit("parallel", {"--history", "exact"}, 2);

@@ -9,6 +9,7 @@
 
 #include "tests/backends.h"
 #include "tests/cli/command.h"
+#include "tests/cli/small_disk.h"
 
 namespace aftershade::test {
 namespace {
@@ -72,6 +73,39 @@ TEST_F(Warm, FailsWhereTheCacheIsOffOrTheLookIsFaulty) {
     EXPECT_EQ(faulty.exit_code, 2);
     EXPECT_NE(faulty.err.find("blom"), std::string::npos) << faulty.err;
     EXPECT_FALSE(has_mesas_code(folder_ / "cache")) << "nothing was compiled";
+}
+
+TEST_F(Warm, FailsWithTheReasonWhereNothingCanBeKept) {
+    write_text(folder_ / "look.json", R"({ "aftershade": 1, "steps": [{ "effect": "view_transform" }] })");
+    const SmallDisk full(folder_ / "full");
+    if (full.mounted()) full.fill();
+    std::vector<std::pair<std::string, std::string>> places{{"/dev/null", "directory"}};
+    if (full.mounted()) places.emplace_back((folder_ / "full").string(), "No space left on device");
+    for (const auto& [cache, reason] : places) {
+        const CommandResult warmed =
+            run({"warm", "look.json", kWarmCapture, "--frames", "4", "--backend", "software"}, cache);
+        EXPECT_EQ(warmed.exit_code, 6) << warmed.err;
+        EXPECT_NE(warmed.err.find("nothing can be cached: " + cache), std::string::npos) << warmed.err;
+        EXPECT_NE(warmed.err.find(reason), std::string::npos) << warmed.err;
+    }
+}
+
+TEST_F(Warm, IsNotNeededWhereTheDiskOfTheCacheIsFull) {
+    const SmallDisk full(folder_ / "full");
+    if (!full.mounted()) GTEST_SKIP() << "needs the right to mount";
+    full.fill();
+    write_text(folder_ / "look.json", R"({ "aftershade": 1, "steps": [{ "effect": "view_transform" }] })");
+    const std::string cache = (folder_ / "full").string();
+    for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{{}, {"--jobs", "2"}}) {
+        std::vector<std::string> words{"run", "look.json",  kWarmCapture, "--frames", "4",
+                                       "-o",  "o_####.exr", "--backend",  "software", "--overwrite"};
+        words.insert(words.end(), more.begin(), more.end());
+        const CommandResult ran = run(words, cache);
+        EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    }
+    const CommandResult doctor = run({"doctor"}, cache);
+    EXPECT_EQ(doctor.exit_code, 0) << doctor.err;
+    EXPECT_NE(doctor.out.find("shader cache  off: " + cache), std::string::npos) << doctor.out;
 }
 
 /// This process and those that it starts on one processor.

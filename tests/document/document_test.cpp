@@ -79,6 +79,11 @@ TEST(Document, PlacesStringsThatHoldQuotesAndBackslashes) {
     EXPECT_EQ(at(root.members[2].value.place), "1:41");
 }
 
+TEST(Document, HoldsNoTextWithAZeroByte) {
+    EXPECT_EQ(faults(R"({ "mask": { "file": "mask.png\u0000zz" } })"),
+              Lines{"f:1:21: error: a text holds no zero byte (\\u0000)"});
+}
+
 TEST(Document, PlacesNumbersWhereverTheyEnd) {
     EXPECT_EQ(at(parsed("42").place), "1:1");
     EXPECT_EQ(at(parsed("\n  -1.5").place), "2:3");

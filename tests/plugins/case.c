@@ -17,6 +17,9 @@
 #ifndef CASE_PREPARE
 #define CASE_PREPARE
 #endif
+#ifndef CASE_DESTROY
+#define CASE_DESTROY
+#endif
 #ifndef CASE_FACTORY
 #define CASE_FACTORY &the_factory
 #endif
@@ -33,6 +36,7 @@ static aftershade_status prepare(const aftershade_instance *instance, const afte
 
 static void destroy(const aftershade_instance *instance) {
     (void)instance;
+    CASE_DESTROY;
 }
 
 static const aftershade_instance the_instance = {

@@ -1,6 +1,7 @@
 // Which files an edit of the page may name: those of the look's and the capture's folders, and no others.
 #include <csignal>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -92,6 +93,27 @@ TEST_F(ServePaths, BesideItAreRefusedAbsoluteThroughParentsAndBehindLinks) {
         << "a shipped profile's name leads nowhere else either";
     EXPECT_EQ(post("/api/save").status, 200);
     EXPECT_EQ(read_text(folder_ / "look.json"), kLook);
+}
+
+TEST_F(ServePaths, TellNothingOfWhatIsElsewhere) {
+    start_in_folders();
+    const std::string mine = (folder_ / "mask.png").string();
+    const auto answer = [&](const std::string& file) { return edit(mask(file)).status; };
+    std::set<int> zero;
+    for (const std::string name : {"deep", "absent"}) {
+        const std::string detour = (outside_ / name).string() + "/";
+        for (int up = 1; up < 8; ++up) {
+            std::string file = detour;
+            for (int i = 0; i < up; ++i) file += "../";
+            EXPECT_EQ(answer(file + mine.substr(1)), 403) << file;
+        }
+        zero.insert(answer((outside_ / name).string() + std::string(1, '\0') + "/../" + mine));
+    }
+    EXPECT_EQ(zero.size(), 1U);
+    fs::create_symlink("/secret/place", outside_ / "hint");
+    EXPECT_EQ(edit(mask(outside_ / "hint")).body.find("secret"), std::string::npos);
+    const Answer cut = edit(mask("mask.png" + std::string(1, '\0') + "zz"));
+    EXPECT_NE((cut.body + get("/api/state").body).find("zero byte"), std::string::npos) << cut.body;
 }
 
 TEST_F(ServePaths, OfAllowPathMayBeNamed) {

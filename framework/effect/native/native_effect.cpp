@@ -25,7 +25,8 @@ struct NativeEffect::Impl {
         try {
             if (remote > 0) library->process()->destroy(remote);
             else call_plugin(place() + "destroy", [&] { functions.destroy(instance); });
-        } catch (const Error&) {  // the work is done, and a destructor must not throw
+        } catch (const Error& error) {  // a destructor must not throw
+            library->ended(error.what());
         }
     }
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/base/status.h"
@@ -63,6 +64,11 @@ public:
     const std::vector<Effect>& effects() const { return effects_; }
     /// Where its code runs; nullptr for this process.
     NativeProcess* process() const { return process_.get(); }
+    /// A fault in the end of an instance, which a destructor cannot throw; the first one is kept.
+    void ended(const std::string& fault) {
+        if (end_fault_.empty()) end_fault_ = fault;
+    }
+    std::string take_end_fault() { return std::exchange(end_fault_, ""); }
 
 private:
     NativeLibrary(void* handle, std::string place);
@@ -76,6 +82,7 @@ private:
     std::unique_ptr<NativeHost> host_;
     void (*deinit_)() = nullptr;  // set once init has succeeded
     std::vector<Effect> effects_;
+    std::string end_fault_;
 };
 
 /// Which library offers which effect. Only the folders given are searched (each for *.so, not below it),
@@ -108,6 +115,9 @@ public:
     /// Libraries that could not be used; the others still are. For warnings. Throws as `find` does for
     /// folders.
     const std::vector<Refusal>& refusals();
+    /// After the effects have ended: throws Error(ExitCode::effect) where `destroy` of one of them failed,
+    /// crashed, ended the process or took too long. [effects in this process cannot be killed]
+    void require_ends();
     /// nullptr: this process.
     const NativeProcess* process() const { return process_.get(); }
 

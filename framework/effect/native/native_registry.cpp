@@ -68,6 +68,14 @@ const std::vector<NativeRegistry::Refusal>& NativeRegistry::refusals() {
     return refusals_;
 }
 
+void NativeRegistry::require_ends() {
+    std::string first;
+    for (const auto& [id, entries] : entries_)
+        for (const Entry& entry : entries)
+            if (const std::string fault = entry.library->take_end_fault(); first.empty()) first = fault;
+    if (!first.empty()) throw Error(ExitCode::effect, first);
+}
+
 void NativeRegistry::load() {
     if (loaded_) return;
     for (const fs::path& folder : folders_)
