@@ -30,7 +30,7 @@ TEST(TextFile, IsReadByteForByte) {
 
 TEST(TextFile, IsReadToItsEndWhereTheSystemDoesNotKnowItsSize) {
     ASSERT_EQ(fs::file_size("/proc/self/cmdline"), 0u);
-    EXPECT_NE(read_text_file("/proc/self/cmdline", ExitCode::usage).find("core_test"), std::string::npos);
+    EXPECT_NE(read_text_file("/proc/self/cmdline", ExitCode::usage).find("base_test"), std::string::npos);
 }
 
 TEST(TextFile, ThatCannotBeReadIsToldWithItsPathAndTheReason) {
