@@ -16,9 +16,10 @@ namespace aftershade {
 /// The profile's own attributes first, then OpenEXR's standard ones (focus, aperture, effectiveFocalLength or
 /// nominalFocalLength, which is what stands on the lens,
 /// sensorOverallDimensions; the matrices as stored_matrices.h has them) and aftershade/camera/<field>. Values
-/// that are not positive where the field must be are taken as not known: producers write 0 for that. The lens
-/// of `known` stands above the header's where matrices are recognized by it. Where the header's lens shows
-/// another angle than its matrices, by more than 1 %, its sensor is as wide as theirs.
+/// that are not positive where the field must be are taken as not known: producers write 0 for that. Where a
+/// lens distinguishes the conventions of matrices, that of `known` comes before the header's. Where the
+/// angles of the header's lens and of its matrices differ by more than 1 %, the sensor width follows the
+/// matrices.
 Camera camera_of_metadata(const ExrPart& part, const Profile& profile, const Camera& known = {});
 
 /// Attributes that should give a field of the camera that `known` lacks, and are below 0, not a number, or

@@ -50,7 +50,7 @@ struct CaptureHeader {
     std::vector<std::string> layer_roles;  ///< "layer1:depth": what can be read of layers, front to back
     std::vector<std::string> roles;        ///< that can be read, sorted
     std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
-    /// Of roles that no document names the channels of: first channels of others that go by the role's names.
+    /// For each role whose channels no document names: the first channel of every other set that fits it.
     std::map<std::string, std::vector<std::string>> other_channels;
     /// Roles that the main file does not store as they are: from files of their own, luminance, Cryptomatte.
     std::set<std::string> derived_roles;
@@ -71,7 +71,7 @@ struct Capture {
     std::size_t pixels_without_motion =
         0;  ///< of velocity: filled, from the camera where that is known, else with 0
     bool motion_from_camera = false;
-    /// Of irradiance that is light over the albedo: those with light where the albedo is below the floor.
+    /// Pixels with light and an albedo below the floor, where irradiance is light divided by the albedo.
     std::size_t pixels_below_albedo_floor = 0;
     /// Of a deep capture: what became of its samples, and as how many layers.
     std::optional<DeepReduction> deep;

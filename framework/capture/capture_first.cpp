@@ -92,7 +92,7 @@ void CaptureReader::hold_to_first_of(const CaptureReader& other) {
         std::call_once(first_->once, [&] { other.decide(other.deciding_files(), *first_); });
 }
 
-/// Of a deep frame among flat ones only the whole picture is read, as of theirs.
+/// Whether a deep frame is read as one flat picture, because the first frame is flat.
 bool CaptureReader::is_held_flat() const {
     const FirstFrame* const first = first_frame();
     return first && first->header->layer_roles.empty();

@@ -20,7 +20,7 @@ struct ManifestEntry {
 /// "cryptomatte/3ae39a5".
 std::vector<std::string> cryptomatte_keys(const ExrMetadata& metadata);
 
-/// Of the Cryptomatte under that key. Empty where there is no manifest, and where it is damaged: it is only a
+/// The names of the Cryptomatte under that key. Empty where its manifest is absent or damaged: it is only a
 /// help. A manif_file lies in the folder of the EXR file; where that is a link, it may lie in that of its
 /// target. Throws Error(ExitCode::capture) where it is not a file that may be read.
 std::vector<ManifestEntry> read_object_manifest(const std::filesystem::path& exr, const ExrMetadata& metadata,

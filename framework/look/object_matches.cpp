@@ -57,7 +57,7 @@ std::vector<ParamValue> values_of(const PipelineStep& step, const std::string& p
     return {};
 }
 
-/// Of the lens that the step takes where a capture has none; 0 where it takes no lens.
+/// The focal length over the sensor width, from the step's parameters; 0 where it has no such parameters.
 double focal_per_width(const PipelineStep& step) {
     double focal_length_mm = 0, sensor_width_mm = 0;
     for (const ParamSpec& spec : step.manifest->params) {
@@ -181,7 +181,7 @@ void ObjectMatches::set(std::size_t index, bool is_found, double px) {
     sightings_.push_back({int(index), is_found, px});
 }
 
-/// Of pixels in which something was hit, where the depth is known.
+/// Where the depth is known, only pixels in which something was hit count.
 void ObjectMatches::look_for_several(std::size_t index, const Capture& capture) {
     const auto ids = capture.images.find(kObjectIdRole), depth = capture.images.find(kDepthRole);
     const bool is_masked = entries_[index].has_mask_input && capture.images.contains(kMaskRole);

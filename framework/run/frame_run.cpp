@@ -81,7 +81,7 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
         meet_non_finite(*current, report, observer);
         const CaptureHeader& header = current->header;
         std::vector<std::string> news = header.differences;
-        // Those of the first sub-frame are told as the frame starts.
+        // The warnings of the first sub-frame are printed when the frame starts.
         for (const std::string& warning : header.warnings)
             if (subframe > 0 && std::ranges::find(said, warning) == said.end()) news.push_back(warning);
         for (const std::string& text : news) add_new(differences, {header.path.string() + ": " + text});

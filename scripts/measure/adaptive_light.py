@@ -1,4 +1,4 @@
-"""sss_adaptive under light that changes, and that its samples tell of; part of `scripts/quality sss-adaptive`."""
+"""sss_adaptive under light that changes, and its samples as --telemetry has them; part of `scripts/quality sss-adaptive`."""
 from pathlib import Path
 from typing import Any
 

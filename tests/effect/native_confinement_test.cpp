@@ -320,7 +320,8 @@ TEST_P(NativeConfinement, LimitsThreadsAndMemoryAndLeavesRoomForWork) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the sanitizer needs all of the address space";
 #endif
-    // A container's own filter may keep this one from being told of threads, which shows when it is tried.
+    // A container's own filter may refuse this one's notices of threads. Only a try shows it, and doctor
+    // tries.
     const CommandResult doctor = run_aftershade({"doctor"}, ".");
     if (doctor.out.find("any number of threads") != std::string::npos)
         GTEST_SKIP() << "this kernel does not count threads, as `aftershade doctor` says";
