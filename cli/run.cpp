@@ -28,6 +28,7 @@
 #include "framework/capture/frame_range.h"
 #include "framework/file/frame_stream.h"
 #include "framework/look/pixel_shape.h"
+#include "framework/render/frame_drive.h"
 #include "framework/run/output.h"
 
 namespace aftershade::cli {
@@ -52,15 +53,13 @@ void require_first_frame(const Sequence& sequence, const CaptureReader& reader, 
 ExitCode explain(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline) {
     const Capture capture =
         reader.read(sequence.file_number(sequence.frames.front()), pipeline.capture_roles());
-    FrameInputs frame;
-    frame.capture = &capture;
     std::cout << printable_lines("color space: " + capture.header.stored_colors.text() + "\n");
     for (const std::string& warning : capture.header.warnings)
         std::cout << "warning: " << printable_lines(warning) << "\n";
     const CaptureHeader& header = capture.header;
     if (const auto note = SquareSteps(pipeline, header.pixel_aspect).note(pipeline, header); !note.empty())
         std::cout << printable_lines(note + "\n");
-    std::cout << printable_lines(explain_params(pipeline, frame));
+    std::cout << printable_lines(explain_params(pipeline, FrameSetting{}.inputs(capture)));
     return ExitCode::done;
 }
 
@@ -181,7 +180,7 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     }
     const int cores = options.jobs.worker_threads > 0 ? options.jobs.worker_threads : allotted_cores();
     set_exr_threads(cores);
-    run.settings.compile_threads = cores - 1;
+    run.settings.drawing.compile_threads = cores - 1;
     StatusWriter status;
     NativeRegistry natives = native_registry(options.plugins, &status);
     std::optional<gpu::Context> made;

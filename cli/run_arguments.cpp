@@ -242,11 +242,11 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
         diagnostics.error({"--trace " + options.trace}, "must end in .json");
     run.missing = missing_frame(options.missing);
     run.on_nan = nan_policy(options.on_nan);
-    run.audit = options.audit;
-    run.fuse_passes = !options.apart;
+    run.drawing.audits = options.audit;
+    run.drawing.fuses_passes = !options.apart;
     // A gap in a stream would shift every frame behind it.
     run.stop_on_error = options.jobs.stop_on_error || options.streams();
-    run.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();
+    run.drawing.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();
     return run;
 }
 

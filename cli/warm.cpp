@@ -82,7 +82,7 @@ ExitCode warm(const WarmOptions& options) {
     run.frames.assign(sequence->frames.begin(),
                       sequence->frames.begin() + std::ptrdiff_t(std::min(kFrames, sequence->frames.size())));
     run.natives = {&natives, &status};
-    run.compile_threads = allotted_cores() - 1;
+    run.drawing.compile_threads = allotted_cores() - 1;
     // What a file takes decides which textures the last pass writes, and so its program.
     double first_s = 0;
     for (const auto& extensions : std::vector<std::vector<std::string>>{{".exr"}, {".png"}, {".exr", ".png"}})

@@ -124,7 +124,7 @@ protected:
             capture.header.frame = number;
             FrameInputs frame;
             frame.capture = &capture;
-            frame.previous = &before;
+            frame.neighbours[-1] = &before;
             rendered.last = renderer.render(frame, {"color", "display", "irradiance", "velocity"}, false);
         }
         rendered.graphs = renderer.graphs_built();

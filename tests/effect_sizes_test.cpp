@@ -26,7 +26,7 @@ protected:
 
     FrameResult run_at_defaults(const Capture& capture) const {
         FrameInputs frame;
-        frame.capture = frame.previous = &capture;
+        frame.capture = frame.neighbours[-1] = &capture;
         return LookRunner(look_of(GetParam(), {}), backends().front()).run(frame);
     }
 

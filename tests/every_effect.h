@@ -163,7 +163,7 @@ protected:
         const Capture before = with_aovs(capture_before()), whole = with_aovs(capture);
         FrameInputs frame;
         frame.capture = &whole;
-        frame.previous = &before;
+        frame.neighbours[-1] = &before;
         return LookRunner(look_of(GetParam(), values), backend).run(frame);
     }
 

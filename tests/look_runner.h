@@ -32,7 +32,7 @@ public:
             if (!capture) return std::nullopt;
             return host::Access::capture({*capture, {}, frame.scale});
         };
-        const auto previous = public_capture(frame.previous), next = public_capture(frame.next);
+        const auto previous = public_capture(frame.at(-1)), next = public_capture(frame.at(1));
         const host::Result result =
             session_.render_subframe(*public_capture(frame.capture), frame.subframe, frame.subframe_count,
                                      {.non_finite = host::NonFinite::ignore,

@@ -117,8 +117,8 @@ struct SuzanneInMotion {
         LookRunner runner(look_of_step(effect, params), gpu::Backend::software);
         FrameInputs frame;
         frame.capture = &capture;
-        frame.previous = &before;
-        frame.next = &after;
+        frame.neighbours[-1] = &before;
+        frame.neighbours[1] = &after;
         const Psnr result = psnr(runner.run(frame).images.at("color"));
         fmt::print("{} {}: {:.2f} dB, in changed pixels {:.2f}\n", effect, params, result.all_db,
                    result.changed_db);

@@ -110,7 +110,7 @@ TEST_P(PixelAspectOf, IsWhatTheEffectMakesOfSquarePixelsByHand) {
         const auto run = [&](const Capture& now, const Capture& earlier) {
             FrameInputs frame;
             frame.capture = &now;
-            frame.previous = &earlier;
+            frame.neighbours[-1] = &earlier;
             return LookRunner(look_of(GetParam(), {}), backends().front()).run(frame);
         };
         const FrameResult made = run(capture, before), expected = run(wide, wide_before);
@@ -286,9 +286,7 @@ TEST(PixelAspect, StepsThatAreDrawnAgainReadTheSquarePixelsOfThoseThatAreNot) {
         frame.capture = &capture;
         gpu::Context context(gpu::Backend::software);
         Pipeline pipeline = bound.pipeline();
-        const auto renderer = [&] { return PipelineRenderer(context, pipeline, kRoot); };
-        PipelineRenderer kept = renderer();
-        kept.keep_steps();
+        PipelineRenderer kept(context, pipeline, kRoot, {}, {.keeps_steps = true});
         (void)kept.render(frame, {"display"}, false);
         const std::pair<std::size_t, const char*> changes[] = {
             {2, "amount"}, {1, "low_radius"}, {0, "exposure"}};
@@ -296,7 +294,9 @@ TEST(PixelAspect, StepsThatAreDrawnAgainReadTheSquarePixelsOfThoseThatAreNot) {
             pipeline.steps[step].values[param] = ParamValue(0.75);
             pipeline.steps[step].origins[param] = "the test";
             const Image again = kept.render_again(frame, {"display"}, false).images.at("display");
-            EXPECT_TRUE(same_bits(again, renderer().render(frame, {"display"}, false).images.at("display")))
+            EXPECT_TRUE(same_bits(again, PipelineRenderer(context, pipeline, kRoot)
+                                             .render(frame, {"display"}, false)
+                                             .images.at("display")))
                 << "step " << step << " at " << aspect;
         }
     }

@@ -244,7 +244,8 @@ TEST(DofHidden, WhatAFrameUpToThreeAwayShowsShowsThrough) {
     const auto error = [&](int offset, const std::string& background) {
         FrameInputs frame;
         frame.capture = &now;
-        for (const int other : {-3, -2, -1, 1, 2, 3}) frame.set(other, other == offset ? &open : &now);
+        for (const int other : {-3, -2, -1, 1, 2, 3})
+            frame.neighbours[other] = other == offset ? &open : &now;
         const Image out = through_neighbours(frame, background);
         double largest = 0;
         for (int y = 20; y < 44; ++y)
@@ -282,8 +283,9 @@ TEST(DofHidden, AmongTheViewsOfNeighboursOneLikeTheSurroundingsIsTaken) {
     };
     std::map<int, Capture> captures;
     FrameInputs frame;
-    for (const int offset : {-3, -2, -1, 0, 1, 2, 3})
-        frame.set(offset, &(captures[offset] = frame_at(offset)));
+    for (const int offset : {-3, -2, -1, 0, 1, 2, 3}) captures[offset] = frame_at(offset);
+    frame.capture = &captures.at(0);
+    for (const auto& [offset, capture] : captures) frame.neighbours[offset] = &capture;
     const Image out = through_neighbours(frame, "neighbours");
     const double opacity = bar_opacity(row, row, row + 1);
     for (int x = column - 8; x <= column + 8; ++x)

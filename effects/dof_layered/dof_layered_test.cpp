@@ -75,7 +75,7 @@ TEST(DofLayered, TakesWhatLiesBehindFromAFrameUpToThreeAway) {
     const auto middle = [&](int offset, const std::string& background) {
         FrameInputs frame;
         frame.capture = &now;
-        frame.set(offset, &open);
+        frame.neighbours[offset] = &open;
         const std::string params = lens.params() + R"(, "blades": 0, "background": ")" + background + "\"";
         Bench bench(EffectFolder(), look_of_step(Named::kEffect, params));
         return bench.run(frame).images.at("color").at(kSide / 2, kSide / 2, 1);

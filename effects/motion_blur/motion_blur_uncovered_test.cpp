@@ -45,8 +45,8 @@ TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
     const Capture before = box_over_disc(0), now = box_over_disc(1), after = box_over_disc(2);
     FrameInputs frame;
     frame.capture = &now;
-    frame.previous = &before;
-    frame.next = &after;
+    frame.neighbours[-1] = &before;
+    frame.neighbours[1] = &after;
     const auto error = [&](const char* background) {
         LookRunner runner(look_of_step("motion_blur", fmt::format(R"("background": "{}")", background)),
                           gpu::Backend::software);

@@ -15,19 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether graphs of one pipeline are graphs of the other: where only values differ, a renderer asks for
-/// those itself.
-bool has_same_form(const Pipeline& a, const Pipeline& b) {
-    const auto same = [](const PipelineStep& one, const PipelineStep& other) {
-        const auto takes_same = [&](const InputSpec& input) {
-            return one.may_take(input) == other.may_take(input);
-        };
-        return one.manifest == other.manifest && one.before.size() == other.before.size() &&
-               std::ranges::all_of(one.manifest->inputs, takes_same);
-    };
-    return std::ranges::equal(a.steps, b.steps, same);
-}
-
 LookVariables variables_of(const LookOptions& options) {
     Diagnostics faults;
     LookVariables variables;
@@ -96,7 +83,7 @@ void LookCore::bind(std::map<std::string, Node> values, ErrorKind kind) {
     Diagnostics faults;
     Pipeline bound = bind_pipeline(look, effects, options, faults);
     stop_at_errors(kind, faults);
-    if (!has_same_form(pipeline, bound)) ++form;
+    if (!bound.has_form_of(pipeline)) ++form;
     ++revision;
     pipeline = std::move(bound);
     overrides = std::move(values);

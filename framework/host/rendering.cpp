@@ -11,6 +11,7 @@
 #include "framework/gpu/external_texture.h"
 #include "framework/host/host_non_finite.h"
 #include "framework/image/role.h"
+#include "framework/render/frame_drive.h"
 #include "framework/run/nan_policy.h"
 
 namespace aftershade::host {
@@ -103,12 +104,12 @@ Rendering::~Rendering() {
 PipelineRenderer& Rendering::renderer() {
     gpu::Context& context = host_->context();
     if (!renderer_) {
-        renderer_ = std::make_shared<PipelineRenderer>(context, look_->pipeline, host_->programs(),
-                                                       NativeSources{host_->natives.get(), nullptr});
+        RendererOptions options;
         // Which threads use the display of a shared context is for the calling program to say.
-        if (!host_->options.share) renderer_->compile_on_threads(allotted_cores() - 1);
+        if (!host_->options.share) options.compile_threads = allotted_cores() - 1;
+        renderer_ = std::make_shared<PipelineRenderer>(context, look_->pipeline, host_->programs(),
+                                                       NativeSources{host_->natives.get(), nullptr}, options);
         form_ = look_->form;
-        telemetry_ = false;
         const std::lock_guard lock(host_->mutex);
         host_->renderings.insert(this);
     }
@@ -130,10 +131,7 @@ void Rendering::prepare(const RenderOptions& options) {
     std::vector<std::string> kept;
     for (const auto& [role, texture] : options.targets) kept.push_back(role);
     renderer.keep_on_gpu(std::move(kept));
-    if (std::exchange(telemetry_, options.telemetry) != options.telemetry) {
-        renderer.set_telemetry(options.telemetry);
-        renderer.pipeline_changed();
-    }
+    renderer.set_telemetry(options.telemetry);
     if (options.wait) gpu::wait_for_fence(host_->context(), options.wait);
 }
 
@@ -231,16 +229,11 @@ Result::Data Rendering::render(const FrameTask& task, const RenderOptions& optio
     };
     const auto current = seen(task.capture), previous = seen(task.previous), next = seen(task.next);
     result.capture = {current, &current->capture};
-    FrameInputs frame;
-    frame.capture = &current->capture;
-    frame.previous = previous ? &previous->capture : nullptr;
-    frame.next = next ? &next->capture : nullptr;
-    frame.begins_shot = task.begins_shot;
-    frame.subframe = task.subframe;
-    frame.subframe_count = task.subframe_count;
-    frame.centre = task.centre ? &task.centre->capture : nullptr;
-    frame.scale = given.scale;
-    frame.fps = options.fps;
+    FrameSetting setting{{}, task.begins_shot, task.subframe_count, given.scale, options.fps};
+    if (previous) setting.neighbours[-1] = {previous, &previous->capture};
+    if (next) setting.neighbours[1] = {next, &next->capture};
+    FrameInputs frame =
+        setting.inputs(current->capture, task.subframe, task.centre ? &task.centre->capture : nullptr);
     frame.fill = [&](const std::string& role, int offset, gpu::Texture& texture) {
         const auto& from = offset == -1 ? previous : offset == 1 ? next : current;
         const auto found = from->textures.find(role);

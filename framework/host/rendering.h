@@ -71,7 +71,6 @@ private:
     std::shared_ptr<const LookCore> look_;
     std::shared_ptr<PipelineRenderer> renderer_;
     int form_ = 0;  // of the look, that the renderer has seen
-    bool telemetry_ = false;
 };
 
 }  // namespace aftershade::host

@@ -114,14 +114,25 @@ std::set<int> Pipeline::neighbour_offsets() const {
 
 const Capture* FrameInputs::at(int offset) const {
     if (offset == 0) return capture;
-    if (offset == -1) return previous;
-    if (offset == 1) return next;
-    const auto found = further.find(offset);
-    return found == further.end() ? nullptr : found->second;
+    const auto found = neighbours.find(offset);
+    return found == neighbours.end() ? nullptr : found->second;
 }
 
-void FrameInputs::set(int offset, const Capture* at_offset) {
-    (offset == 0 ? capture : offset == -1 ? previous : offset == 1 ? next : further[offset]) = at_offset;
+bool Pipeline::has_form_of(const Pipeline& other) const {
+    const auto same_mask = [](const std::optional<MaskSpec>& one, const std::optional<MaskSpec>& two) {
+        if (!one || !two) return !one && !two;
+        return one->role == two->role && one->objects == two->objects && one->file == two->file &&
+               one->invert == two->invert;
+    };
+    const auto same_step = [&](const PipelineStep& one, const PipelineStep& two) {
+        const auto takes_same = [&](const InputSpec& input) {
+            return one.may_take(input) == two.may_take(input);
+        };
+        return one.name == two.name && one.manifest == two.manifest && one.inputs == two.inputs &&
+               one.before == two.before && same_mask(one.mask, two.mask) &&
+               std::ranges::all_of(one.manifest->inputs, takes_same);
+    };
+    return taps == other.taps && std::ranges::equal(steps, other.steps, same_step);
 }
 
 bool Pipeline::writes_role(const std::string& role) const {

@@ -28,6 +28,7 @@ class Texture;
 struct InputSource {
     int step = -1;       ///< index of an earlier step; -1: the capture
     std::string output;  ///< that step's output or texture; for the capture, the role
+    bool operator==(const InputSource&) const = default;
 };
 
 /// One use of an effect. Values are, from the most to the least binding: --set, look, preset; below them come
@@ -58,6 +59,7 @@ struct Tap {
     std::string step;
     std::string texture;
     std::string text() const { return step + "." + texture; }
+    bool operator==(const Tap&) const = default;
 };
 
 struct Pipeline {
@@ -79,15 +81,16 @@ struct Pipeline {
     bool has_foreign() const;
     /// The last step whose effect accumulates sub-frames; -1: none does.
     int last_accumulating_step() const;
+    /// Whether graphs of this pipeline are graphs of the other: where only values differ, a graph's key has
+    /// those that decide over it (framework/render/graph_key.h).
+    bool has_form_of(const Pipeline& other) const;
 };
 
 /// The captures of one frame. [refers to what the caller keeps]
 struct FrameInputs {
     const Capture* capture = nullptr;
-    const Capture* previous = nullptr;  ///< of the same shot, where some input wants it
-    const Capture* next = nullptr;
-    std::map<int, const Capture*> further{};  ///< the like, by offset, where that is not -1 or 1
-    bool begins_shot = false;                 ///< a cut: nothing before it counts
+    std::map<int, const Capture*> neighbours{};  ///< by offset: of the same shot, where some input wants them
+    bool begins_shot = false;                    ///< a cut: nothing before it counts
     int subframe = 0;
     int subframe_count = 1;
     const Capture* centre = nullptr;  ///< of several sub-frames: the one at the middle of the exposure
@@ -100,7 +103,6 @@ struct FrameInputs {
     std::function<void()> uploaded{};
 
     const Capture* at(int offset) const;
-    void set(int offset, const Capture* at_offset);
     /// Whether there is a capture at that offset, with an image of that role.
     bool has_image(const std::string& role, int offset) const {
         const Capture* const from = at(offset);

@@ -111,8 +111,8 @@ CameraBlock camera_block(const FrameInputs& frame, const StepGrid& grid, const F
     const Camera& camera = frame.capture->header.camera;
     CameraBlock block;
     set_matrices(camera, block);
-    const std::optional<Camera> known =
-        frame.previous ? std::optional(frame.previous->header.camera) : before.camera;
+    const Capture* const earlier = frame.at(-1);
+    const std::optional<Camera> known = earlier ? std::optional(earlier->header.camera) : before.camera;
     if (const auto previous = known ? projection_of(*known) : std::nullopt) {
         block.prev_clip_from_world = columns_of(previous->clip_from_world);
         block.prev_view_from_world = columns_of(previous->view_from_world);

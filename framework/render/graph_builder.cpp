@@ -78,8 +78,10 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       pipeline_(frame.pipeline),
       square_(frame_.square_pixels()),
       square_steps_(frame.pipeline, square_.stretch),
-      programs_({tools.context, tools.programs, tools.status, tools.fuses_passes, !tools.keeps_steps,
-                 tools.keeps_steps || tools.programs.is_guarding_loops(), tools.compile_threads}),
+      programs_({tools.context, tools.programs, tools.status,
+                 tools.options.fuses_passes && !tools.options.wants_each_pass(), !tools.options.keeps_steps,
+                 tools.options.keeps_steps || tools.programs.is_guarding_loops(),
+                 tools.options.compile_threads}),
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {
@@ -93,7 +95,7 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     use_grid_of(-1);
     keep_results();
     keep_taps();
-    if (tools_.telemetry) keep_statistics();
+    if (tools_.options.telemetry) keep_statistics();
     programs_.finish(graph_, blocks_, built_->first_single_pass);
     std::vector<GraphBinding>& bindings = built_->bindings;
     for (const auto& [image, texture] : imports_)
@@ -106,10 +108,10 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     built_->key = frame_.key();
     // Where threads compile, they draw each pass as well.
     if (tools_.primes && !built_->ahead)
-        graph::prime(tools_.context, graph_, graph_.compile(!tools_.keeps_steps));
+        graph::prime(tools_.context, graph_, graph_.compile(!tools_.options.keeps_steps));
     const std::unique_ptr<gpu::TexturesAhead> textures = programs_.take_textures();
     built_->executor = std::make_unique<graph::Executor>(tools_.context, std::move(graph_),
-                                                         !tools_.keeps_steps, textures.get());
+                                                         !tools_.options.keeps_steps, textures.get());
     return std::move(built_);
 }
 
@@ -185,7 +187,7 @@ int GraphBuilder::input_level(graph::TextureHandle handle) const {
 /// Whether somebody may look at texels that no pass has drawn. As floats, their bits are not a number, so
 /// that an audit finds a pass that reads them.
 bool GraphBuilder::shows_undrawn(const StepBuild& build, const TextureSpec& spec) const {
-    return tools_.marks_undrawn || std::ranges::any_of(pipeline_.taps, [&](const Tap& tap) {
+    return tools_.options.wants_each_pass() || std::ranges::any_of(pipeline_.taps, [&](const Tap& tap) {
                return tap.step == build.step.name && tap.texture == spec.name;
            });
 }

@@ -20,6 +20,7 @@
 #include "framework/render/graph_bindings.h"
 #include "framework/render/graph_key.h"
 #include "framework/render/pass_programs.h"
+#include "framework/render/renderer_options.h"
 #include "framework/render/step_files.h"
 
 namespace aftershade {
@@ -29,12 +30,8 @@ struct GraphTools {
     gpu::Context& context;
     ProgramCache& programs;
     StepFiles& files;
-    bool telemetry = false;          ///< keep the textures of the steps' statistics
+    const RendererOptions& options;
     StatusWriter* status = nullptr;  ///< receives which pass is compiled; may be null
-    bool keeps_steps = false;        ///< each texture has memory of its own
-    bool fuses_passes = true;        ///< passes that can run as one do
-    int compile_threads = 0;         ///< beside the caller's; with one, another makes textures
-    bool marks_undrawn = false;      ///< partial textures have every bit set where no pass draws
     bool primes = false;             ///< what the first draws compile is made before them
 };
 

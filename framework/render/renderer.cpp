@@ -50,17 +50,26 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
 }  // namespace
 
 PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
-                                   const std::filesystem::path& data_folder, NativeSources natives)
+                                   const std::filesystem::path& data_folder, NativeSources natives,
+                                   const RendererOptions& options)
     : PipelineRenderer(context, pipeline, std::make_shared<ProgramCache>(context, data_folder / "glsl"),
-                       natives) {}
+                       natives, options) {}
 
 PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
-                                   std::shared_ptr<ProgramCache> programs, NativeSources natives)
+                                   std::shared_ptr<ProgramCache> programs, NativeSources natives,
+                                   const RendererOptions& options)
     : context_(context),
       pipeline_(pipeline),
       programs_(std::move(programs)),
       status_(natives.status),
-      natives_(natives) {}
+      natives_(natives),
+      options_(options) {
+    options_.compile_threads = CompileAhead::useful_threads(context_, options.compile_threads);
+    const bool guards = options.guards_loops || options.audits;
+    if (!guards || context_.info().renderer.find("llvmpipe") == std::string::npos) return;
+    loop_guard_.emplace(context_, sizeof(std::uint32_t), "loop guard");
+    programs_->guard_loops();
+}
 
 PipelineRenderer::~PipelineRenderer() {
     drop_spare_memory();
@@ -102,10 +111,8 @@ void require_room(const Pipeline& pipeline, const CaptureHeader& header, int mos
 
 void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::string>& roles, bool primes) {
     require_room(pipeline_, frame.capture->header, context_.info().texture_side_px);
-    built_ = build_graph(
-        {context_, *programs_, files_, telemetry_, status_, keeps_steps_,
-         fuses_passes_ && !keeps_steps_ && !audit_, compile_threads_, keeps_steps_ || audit_, primes},
-        {pipeline_, frame, params_, natives_, roles});
+    built_ = build_graph({context_, *programs_, files_, options_, status_, primes},
+                         {pipeline_, frame, params_, natives_, roles});
     ++graphs_built_;
     set_hooks();
 }
@@ -139,23 +146,8 @@ double PipelineRenderer::feed(const FrameInputs& frame, const std::vector<std::s
     return timer.stop_ms();
 }
 
-void PipelineRenderer::compile_on_threads(int threads) {
-    compile_threads_ = CompileAhead::useful_threads(context_, threads);
-}
-
 int PipelineRenderer::programs_compiled_ahead() const {
     return built_ && built_->ahead ? built_->ahead->programs_made() : 0;
-}
-
-void PipelineRenderer::set_audit(bool audit) {
-    audit_ = audit;
-    if (audit) guard_loops();
-}
-
-void PipelineRenderer::guard_loops() {
-    if (loop_guard_ || context_.info().renderer.find("llvmpipe") == std::string::npos) return;
-    loop_guard_.emplace(context_, sizeof(std::uint32_t), "loop guard");
-    programs_->guard_loops();
 }
 
 namespace {
@@ -197,7 +189,8 @@ void PipelineRenderer::require_whole_loops(const std::string& pass) {
 }
 
 void PipelineRenderer::run_passes(bool timed, graph::PassRange range, FrameResult& result) {
-    const auto observer = audit_ ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{};
+    const auto observer =
+        options_.audits ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{};
     const auto times = built_->executor->run(timed, observer, range);
     result.times.insert(result.times.end(), times.begin(), times.end());
     if (!status_ || !status_->active()) return;
@@ -248,7 +241,7 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     const int first_pass = accumulates ? built_->first_single_pass : 0;
     upload_ms += feed(once, roles, {valid, valid ? camera_before_ : std::nullopt}, first_pass);
     camera_before_ = once.capture->header.camera;
-    if (audit_)
+    if (options_.audits)
         for (const GraphBinding& binding : built_->bindings)
             if (const auto* input = std::get_if<CaptureBinding>(&binding))
                 audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
@@ -256,7 +249,7 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     run_passes(timed, {first_pass, -1}, result);
     read_results(roles, timed, result);
     if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
-    if (telemetry_) {
+    if (options_.telemetry) {
         result.telemetry = read_telemetry(header.frame);
         result.telemetry->passes = result.times;
     }
@@ -282,7 +275,7 @@ int PipelineRenderer::first_changed_step(const std::vector<ParamSet>& before,
 
 FrameResult PipelineRenderer::render_again(const FrameInputs& frame, const std::vector<std::string>& roles,
                                            bool timed) {
-    const bool may_keep = keeps_steps_ && built_ && !is_stale_ && !saved_ && !audit_ &&
+    const bool may_keep = options_.keeps_steps && built_ && !is_stale_ && !saved_ && !options_.audits &&
                           !pipeline_.has_history() && frame.subframe_count == 1 &&
                           params_.size() == pipeline_.steps.size() && !mixes_drawn_.empty();
     if (!may_keep) return render(frame, roles, timed);

@@ -18,6 +18,7 @@
 #include "framework/look/pipeline.h"
 #include "framework/render/audit.h"
 #include "framework/render/native_steps.h"
+#include "framework/render/renderer_options.h"
 #include "framework/render/step_files.h"
 #include "framework/render/telemetry.h"
 
@@ -46,10 +47,11 @@ struct SavedHistory;
 class PipelineRenderer {
 public:
     PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
-                     const std::filesystem::path& data_folder, NativeSources natives = {});
+                     const std::filesystem::path& data_folder, NativeSources natives = {},
+                     const RendererOptions& options = {});
     /// The same with programs that several renderers of one context share.
     PipelineRenderer(gpu::Context& context, const Pipeline& pipeline, std::shared_ptr<ProgramCache> programs,
-                     NativeSources natives = {});
+                     NativeSources natives = {}, const RendererOptions& options = {});
     ~PipelineRenderer();
 
     /// Builds the first frame's graph and has the driver make its programs, before the frame's pixels are
@@ -65,30 +67,17 @@ public:
     /// `frame.capture->header.frame`; anything else restarts history. Throws Error(ExitCode::effect).
     FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// The last call's frame once more, of which nothing changed but what the pipeline's values give: steps
-    /// before the first that differs are not drawn again, if keep_steps() was called and no step has a
-    /// history. The captures must be the same objects with the same pixels.
+    /// before the first that differs are not drawn again, if they are kept and no step has a history. The
+    /// captures must be the same objects with the same pixels.
     FrameResult render_again(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
-    /// Gives each texture memory of its own, so that it lives until the next frame. [before the first frame]
-    void keep_steps() { keeps_steps_ = true; }
-    /// Whether passes that can run as one do, unless keep_steps() or set_audit() want each by itself.
-    /// [before the first frame]
-    void fuse_passes(bool fuses) { fuses_passes_ = fuses; }
-    /// How many threads beside this one compile what a new graph needs, where a driver compiles on the
-    /// processor. [before the first frame]
-    void compile_on_threads(int threads);
-    /// Of the last graph: what those threads compiled.
+    /// Of the last graph: what the threads of RendererOptions compiled.
     int programs_compiled_ahead() const;
     /// Of the last frame: how many of the pipeline's steps were drawn.
     int steps_drawn() const { return steps_drawn_; }
-    /// Reads every input and every float texture back after its pass and looks for NaN and infinities. Slow.
-    /// Guards loops, too. [before the first frame]
-    void set_audit(bool audit);
-    /// A loop that llvmpipe ended before its time, without which the picture is wrong, is an error of its
-    /// pass. Does nothing with other renderers, which end none. [before the first frame]
-    void guard_loops();
-    /// Reads the textures of the effects' telemetry back after each frame; they share no memory then.
-    /// [before the first frame]
-    void set_telemetry(bool telemetry) { telemetry_ = telemetry; }
+    /// From the next frame on, which builds another graph if that changes.
+    void set_telemetry(bool telemetry) {
+        is_stale_ |= std::exchange(options_.telemetry, telemetry) != telemetry;
+    }
 
     /// Results of these roles are not read back: result_texture() has them, FrameResult::images has not.
     void keep_on_gpu(std::vector<std::string> roles) { kept_on_gpu_ = std::move(roles); }
@@ -153,13 +142,9 @@ private:
     float aspect_ = 1;                     // of the pixels of the frame before
     std::string frame_fault_;              // why this frame restarted history
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
-    bool audit_ = false;
-    bool telemetry_ = false;
+    RendererOptions options_;
     std::vector<std::string> kept_on_gpu_;
     bool is_stale_ = false;
-    bool keeps_steps_ = false;
-    bool fuses_passes_ = true;
-    int compile_threads_ = 0;
     int steps_drawn_ = 0;
     std::vector<std::string> mixes_drawn_;  // by step, as a document would write them
 };

@@ -12,7 +12,7 @@
 #include "framework/base/text.h"
 #include "framework/effect/registry.h"
 #include "framework/image/role.h"
-#include "framework/render/renderer.h"
+#include "framework/render/frame_drive.h"
 
 namespace aftershade {
 
@@ -165,20 +165,21 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
     const Pipeline pipeline = pipeline_of(manifest, setting);
     std::vector<std::string> roles;
     for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
-    PipelineRenderer renderer(context, pipeline, data_folder, natives);
-    renderer.guard_loops();
+    RendererOptions drawing;
+    drawing.guards_loops = true;
+    PipelineRenderer renderer(context, pipeline, data_folder, natives, drawing);
     std::set<int> offsets = pipeline.neighbour_offsets();
     offsets.insert({-1, 0, 1});
     // Two frames, so that history is read.
     for (const int number : {1, 2}) {
-        std::map<int, Capture> captures;  // by offset
-        FrameInputs frame;
+        FrameSetting among;
         for (const int offset : offsets) {
-            Capture& capture = captures[offset] = make_test_capture(64, 36, number + offset);
-            add_required_images(manifest, capture);
-            if (offset == 0) add_layers(manifest, capture);
-            frame.set(offset, &capture);
+            auto capture = std::make_shared<Capture>(make_test_capture(64, 36, number + offset));
+            add_required_images(manifest, *capture);
+            if (offset == 0) add_layers(manifest, *capture);
+            among.neighbours[offset] = std::move(capture);
         }
+        const FrameInputs frame = among.inputs(*among.neighbours.at(0));
         try {
             // Timed, so that each pass has ended before the next begins: what fails is then known.
             const std::string bad = first_bad_value(renderer.render(frame, roles, true));

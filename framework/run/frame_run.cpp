@@ -46,40 +46,31 @@ void note_non_finite(int frame, RunReport& report) {
     if (std::ranges::find(frames, frame) == frames.end()) frames.push_back(frame);
 }
 
-FrameInputs FrameRun::inputs_of(std::size_t index) const {
-    FrameInputs inputs;
-    inputs.subframe_count = loader_.subframe_count();
-    inputs.scale = 1.0 / run_.scale_divisor;
-    inputs.fps = sequence_.fps;
-    inputs.begins_shot = loader_.begins_shot(index);
-    return inputs;
+FrameSetting FrameRun::setting_of(std::size_t index) const {
+    FrameSetting setting;
+    setting.begins_shot = loader_.begins_shot(index);
+    setting.subframe_count = loader_.subframe_count();
+    setting.scale = 1.0 / run_.scale_divisor;
+    setting.fps = sequence_.fps;
+    return setting;
 }
 
 void FrameRun::build_ahead(std::size_t index, const std::vector<std::string>& roles) {
     if (!renderer_.can_build_ahead()) return;
-    const std::optional<Capture> outline = loader_.outline(index);
-    if (!outline) return;
-    FrameInputs inputs = inputs_of(index);
-    inputs.capture = inputs.centre = &*outline;
-    renderer_.build_ahead(inputs, roles);
+    if (const std::optional<Capture> outline = loader_.outline(index))
+        renderer_.build_ahead(setting_of(index).inputs(*outline, 0, &*outline), roles);
 }
 
 FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,
                                     RunReport& report, const RunObserver& observer) {
-    FrameInputs inputs = inputs_of(index);
-    const auto neighbours = timed_read(report, [&] { return loader_.neighbours(index); });
-    for (const auto& [offset, capture] : neighbours) inputs.set(offset, capture.get());
-    std::shared_ptr<const Capture> current, centre;
-    FrameResult result;
-    std::vector<graph::PassTime> times;
-    std::string history_reset;
-    std::vector<std::string> messages, said, differences;
-    for (int subframe = 0; subframe < inputs.subframe_count; ++subframe) {
-        current = timed_read(report, [&] { return loader_.take(index, subframe); });
-        if (subframe == inputs.subframe_count / 2) centre = current;
-        if (subframe == 0 && observer.frame_started) observer.frame_started(*current);
-        meet_non_finite(*current, report, observer);
-        const CaptureHeader& header = current->header;
+    FrameSetting setting = setting_of(index);
+    setting.neighbours = timed_read(report, [&] { return loader_.neighbours(index); });
+    std::vector<std::string> said, differences;
+    const auto take = [&](int subframe) {
+        auto capture = timed_read(report, [&] { return loader_.take(index, subframe); });
+        if (subframe == 0 && observer.frame_started) observer.frame_started(*capture);
+        meet_non_finite(*capture, report, observer);
+        const CaptureHeader& header = capture->header;
         std::vector<std::string> news = header.differences;
         // The warnings of the first sub-frame are printed when the frame starts.
         for (const std::string& warning : header.warnings)
@@ -87,19 +78,12 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
         for (const std::string& text : news) add_new(differences, {header.path.string() + ": " + text});
         add_new(said, header.warnings);
         add_new(said, header.differences);
-        inputs.capture = current.get();
-        inputs.centre = centre.get();
-        inputs.subframe = subframe;
-        inputs.uploaded = [&] { loader_.give_images(index, current, roles, current == centre ? 2 : 1); };
-        result = renderer_.render(inputs, roles, true);
-        times.insert(times.end(), result.times.begin(), result.times.end());
-        if (subframe == 0) history_reset = result.history_reset;
-        messages.insert(messages.end(), result.messages.begin(), result.messages.end());
-    }
-    result.times = std::move(times);
-    result.messages = std::move(messages);
-    result.history_reset = std::move(history_reset);
-    Rendered rendered = finished(std::move(centre), std::move(result));
+        return capture;
+    };
+    DrawOptions draw;
+    draw.uploaded = [&] { loader_.give_images(index, roles); };
+    DrawnFrame drawn = draw_frame(renderer_, setting, take, roles, draw);
+    Rendered rendered = finished(std::move(drawn.centre), std::move(drawn.result));
     rendered.message = joined(said, "; ", "; ");
     rendered.differences = std::move(differences);
     return rendered;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/render/renderer.h"
+#include "framework/render/frame_drive.h"
 #include "framework/run/frame_loader.h"
 #include "framework/run/nan_policy.h"
 #include "framework/run/run_report.h"
@@ -36,7 +36,7 @@ public:
                     const RunObserver& observer);
 
 private:
-    FrameInputs inputs_of(std::size_t index) const;
+    FrameSetting setting_of(std::size_t index) const;
     void meet_non_finite(const Capture& capture, RunReport& report, const RunObserver& observer) const;
     Rendered finished(std::shared_ptr<const Capture> capture, FrameResult result) const;
 

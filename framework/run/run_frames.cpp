@@ -116,7 +116,7 @@ bool skips(const FrameLoader& loader, const RunOptions& run, std::size_t index, 
 
 void report_result(const CaptureHeader& header, const FrameResult& result, bool is_first,
                    const RunOptions& run, const RunObserver& observer) {
-    if (run.audit && observer.frame_audited) observer.frame_audited(header, result.audit);
+    if (run.drawing.audits && observer.frame_audited) observer.frame_audited(header, result.audit);
     for (const std::string& line : result.messages)
         if (observer.native_message) observer.native_message(header.frame, line);
     if (!is_first && !result.history_reset.empty() && observer.history_reset)
@@ -302,11 +302,7 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
                        roles_to_read(setup.pipeline, setup.outputs));
     gpu::Context& context = setup.context();
     std::optional<PipelineRenderer> renderer(std::in_place, context, setup.pipeline, setup.data_folder,
-                                             setup.options.natives);
-    renderer->set_audit(setup.options.audit);
-    renderer->fuse_passes(setup.options.fuse_passes);
-    renderer->compile_on_threads(setup.options.compile_threads);
-    renderer->set_telemetry(setup.options.telemetry);
+                                             setup.options.natives, setup.options.drawing);
     const auto end_gl = [&] {
         renderer.reset();
         if (setup.end_context) setup.end_context();

@@ -7,6 +7,7 @@
 
 #include "framework/image/image.h"
 #include "framework/render/native_steps.h"
+#include "framework/render/renderer_options.h"
 #include "framework/render/trace.h"
 
 namespace aftershade {
@@ -32,10 +33,7 @@ struct RunOptions {
     MissingFrame missing = MissingFrame::error;
     NanPolicy on_nan = NanPolicy::warn;
     bool stop_on_error = false;  ///< the first frame that fails ends the run
-    bool audit = false;
-    bool fuse_passes = true;
-    int compile_threads = 0;  ///< beside the one that draws, for what a first frame compiles
-    bool telemetry = false;
+    RendererOptions drawing{};
     int scale_divisor = 1;                ///< frames are rendered at 1/this of their size
     std::optional<Window> region;         ///< px of the display window at full scale, from its top left
     std::optional<int> region_margin_px;  ///< rendered around the region, and not written; nullopt: what it

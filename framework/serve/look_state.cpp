@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/error.h"
+#include "framework/render/frame_drive.h"
 #include "framework/serve/bound_text.h"
 
 namespace aftershade::serve {
@@ -92,8 +93,7 @@ Json steps_json(const std::string& text, const BoundText* bound, EffectRegistry&
     if (!document.is_object() || !document.contains("steps") || !document["steps"].is_array()) return list;
     Capture capture;
     capture.header = header;
-    FrameInputs frame;
-    frame.capture = &capture;
+    const FrameInputs frame = FrameSetting{}.inputs(capture);
     for (const Json& written : document["steps"]) {
         if (!written.is_object()) continue;
         Json step = written_step(written, list.size());

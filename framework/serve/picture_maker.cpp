@@ -31,28 +31,6 @@ double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Everything of a pipeline that decides which passes and textures there are, but for values that a graph's
-/// key holds itself.
-std::string form_of(const Pipeline& pipeline) {
-    std::string form;
-    for (const PipelineStep& step : pipeline.steps) {
-        form += fmt::format("{}={}@{};", step.name, step.manifest->id, fmt::ptr(step.manifest));
-        for (const auto& [input, source] : step.inputs)
-            form += fmt::format("{}<{}.{},", input, source.step, source.output);
-        for (const InputSpec& input : step.manifest->inputs) form += step.may_take(input) ? '1' : '0';
-        for (const auto& [output, source] : step.before)
-            form += fmt::format("{}~{}.{},", output, source.step, source.output);
-        if (step.mask) {
-            form +=
-                fmt::format("mask {} {} {} ", step.mask->role, step.mask->file.string(), step.mask->invert);
-            if (!step.mask->objects.empty()) form += coverage_role(step.mask->objects);
-        }
-        form += '\n';
-    }
-    for (const Tap& tap : pipeline.taps) form += tap.text() + " ";
-    return form;
-}
-
 bool makes(const Pipeline& pipeline, const std::string& role) {
     return pipeline.writes_role(role);
 }
@@ -80,17 +58,18 @@ PictureMaker::~PictureMaker() = default;
 void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
     Pipeline pipeline = request.look->pipeline;
     if (request.view.starts_with("tap:")) pipeline.taps = {tap_of(request.view, pipeline)};
-    std::string form = fmt::format("{}\n", request.look->effects_revision) + form_of(pipeline);
+    const bool is_new = !scaled.pipeline || scaled.look->effects_revision != request.look->effects_revision ||
+                        !pipeline.has_form_of(*scaled.pipeline);
     if (!scaled.pipeline) scaled.pipeline = std::make_unique<Pipeline>();
-    const bool has_changed = form != scaled.form;
     *scaled.pipeline = std::move(pipeline);
-    scaled.form = std::move(form);
+    if (is_new) ++scaled.form;
     if (!scaled.renderer) {
+        RendererOptions options;
+        options.keeps_steps = true;
+        options.compile_threads = allotted_cores() - 1;
         scaled.renderer = std::make_unique<PipelineRenderer>(context_, *scaled.pipeline, programs_,
-                                                             NativeSources{nullptr, &status_});
-        scaled.renderer->keep_steps();
-        scaled.renderer->compile_on_threads(allotted_cores() - 1);
-    } else if (has_changed) {
+                                                             NativeSources{nullptr, &status_}, options);
+    } else if (is_new) {
         scaled.renderer->pipeline_changed();
     }
     scaled.look = request.look;
@@ -133,27 +112,17 @@ bool PictureMaker::is_next(const Scaled& scaled, int frame) const {
     return before != sequence_.frames.end() && before + 1 != sequence_.frames.end() && *(before + 1) == frame;
 }
 
-FrameResult PictureMaker::draw_frame(Scaled& scaled, const std::vector<std::string>& roles, Start start) {
+FrameResult PictureMaker::draw_subframes(Scaled& scaled, const std::vector<std::string>& roles, Start start) {
     const Loaded& loaded = *scaled.loaded;
-    FrameInputs inputs;
-    inputs.subframe_count = int(loaded.captures.size());
-    inputs.scale = 1.0 / loaded.run.scale_divisor;
-    inputs.fps = sequence_.fps;
+    FrameSetting setting;
+    setting.neighbours = loaded.neighbours;
     // Else as `run --frames` begins with this frame.
-    inputs.begins_shot = start != Start::next_frame || loaded.loader->begins_shot(0);
-    for (const auto& [offset, capture] : loaded.neighbours) inputs.set(offset, capture.get());
-    FrameResult result;
-    std::vector<graph::PassTime> times;
-    for (int i = 0; i < inputs.subframe_count; ++i) {
-        inputs.subframe = i;
-        inputs.capture = loaded.captures[std::size_t(i)].get();
-        inputs.centre = loaded.captures[std::size_t(std::min(i, inputs.subframe_count / 2))].get();
-        result = start == Start::same_frame ? scaled.renderer->render_again(inputs, roles, true)
-                                            : scaled.renderer->render(inputs, roles, true);
-        times.insert(times.end(), result.times.begin(), result.times.end());
-    }
-    result.times = std::move(times);
-    return result;
+    setting.begins_shot = start != Start::next_frame || loaded.loader->begins_shot(0);
+    setting.subframe_count = int(loaded.captures.size());
+    setting.scale = 1.0 / loaded.run.scale_divisor;
+    setting.fps = sequence_.fps;
+    const auto take = [&](int subframe) { return loaded.captures[std::size_t(subframe)]; };
+    return draw_frame(*scaled.renderer, setting, take, roles, {start == Start::same_frame, {}}).result;
 }
 
 PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
@@ -165,7 +134,7 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
                                                                                   : kColorRole};
     if (request.view.starts_with("role:") && makes(request.look->pipeline, request.view.substr(5)))
         roles.push_back(request.view.substr(5));
-    const std::string form_before = scaled.form;
+    const int form_before = scaled.form;
     adopt(scaled, request);
     const bool follows = request.continues && is_next(scaled, request.frame) && scaled.form == form_before;
     const bool is_same = load(scaled, request);
@@ -175,10 +144,10 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
                          scaled.roles_asked == asked && scaled.form == form_before;
     if (!is_here) {
         scaled.is_current = false;
-        scaled.result = draw_frame(scaled, roles,
-                                   is_same   ? Start::same_frame
-                                   : follows ? Start::next_frame
-                                             : Start::shot);
+        scaled.result = draw_subframes(scaled, roles,
+                                       is_same   ? Start::same_frame
+                                       : follows ? Start::next_frame
+                                                 : Start::shot);
         drawn_ = scaled.renderer->steps_drawn();
         scaled.is_current = true;
         scaled.revision = request.look->revision;

@@ -15,7 +15,7 @@
 #include "framework/capture/capture.h"
 #include "framework/capture/sequence.h"
 #include "framework/gpu/context.h"
-#include "framework/render/renderer.h"
+#include "framework/render/frame_drive.h"
 #include "framework/run/frame_loader.h"
 #include "framework/serve/look_model.h"
 
@@ -67,7 +67,7 @@ private:
     struct Scaled {
         std::unique_ptr<Pipeline> pipeline;
         std::shared_ptr<const BoundText> look;  // owns the manifests that the renderer refers to
-        std::string form;
+        int form = 0;                           // counts changes of the pipeline that ask for another graph
         std::string roles_asked;
         std::unique_ptr<PipelineRenderer> renderer;
         std::unique_ptr<Loaded> loaded;
@@ -82,7 +82,7 @@ private:
     bool load(Scaled& scaled, const PictureRequest& request);
     /// What decides which frame's images a step has besides those of the capture.
     enum class Start { same_frame, shot, next_frame };
-    FrameResult draw_frame(Scaled& scaled, const std::vector<std::string>& roles, Start start);
+    FrameResult draw_subframes(Scaled& scaled, const std::vector<std::string>& roles, Start start);
     bool is_next(const Scaled& scaled, int frame) const;
     /// What the steps make of `color`, at full size.
     const Image& made_color(const PictureRequest& request);

@@ -139,7 +139,7 @@ public:
                       before = with_aovs(*manifest, capture_before());
         FrameInputs frame;
         frame.capture = &capture;
-        frame.previous = &before;
+        frame.neighbours[-1] = &before;
         PipelineRenderer renderer(context_, pipeline, shaders_.path());
         return renderer.render(frame, {"color", "display", "irradiance", "velocity"}, false).images;
     }

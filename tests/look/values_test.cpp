@@ -348,9 +348,9 @@ void main() {
     for (float& value : then.images.at("color").floats()) value += 3;
     FrameInputs frame;
     frame.capture = &now;
-    frame.next = &then;
+    frame.neighbours[1] = &then;
     EXPECT_EQ(bench.run(frame).images.at("color").at(1, 1, 0), 3.25f);
-    frame.next = nullptr;
+    frame.neighbours.clear();
     EXPECT_EQ(bench.run(frame).images.at("color").at(1, 1, 0), 0.5f);
 }
 
@@ -375,7 +375,7 @@ void main() {
 })");
     const Capture capture = scene();
     FrameInputs frame;
-    frame.capture = frame.next = &capture;
+    frame.capture = frame.neighbours[1] = &capture;
     const std::vector<std::string> none{}, color{"color"}, both{"color", "depth"};
     const auto with = [&](const std::string& value) {
         return look_of(R"({ "effect": "ahead", "params": { "look": )" + value + " } }");

@@ -22,12 +22,11 @@ public:
           bool has_store = true)
         : bound_(effects, look_of(steps)),
           context_(backend),
-          renderer_(
-              context_, bound_.pipeline(),
-              std::make_shared<ProgramCache>(context_, kData / "glsl",
-                                             has_store ? ProgramStore(folder_.path()) : ProgramStore())) {
+          renderer_(context_, bound_.pipeline(),
+                    std::make_shared<ProgramCache>(context_, kData / "glsl",
+                                                   has_store ? ProgramStore(folder_.path()) : ProgramStore()),
+                    {}, {.compile_threads = threads}) {
         EXPECT_EQ(bound_.faults().find("error"), std::string::npos) << bound_.faults();
-        renderer_.compile_on_threads(threads);
     }
     FrameResult run(const Capture& capture) {
         FrameInputs frame;

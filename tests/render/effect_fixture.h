@@ -82,10 +82,10 @@ private:
 class Bench {
 public:
     Bench(const EffectFolder& effects, const std::string& look, const PipelineOptions& options = {},
-          gpu::Backend backend = gpu::Backend::software)
+          gpu::Backend backend = gpu::Backend::software, const RendererOptions& drawing = {})
         : bound_(effects, look, options),
           context_(backend),
-          renderer_(context_, bound_.pipeline(), std::filesystem::path(AFTERSHADE_SOURCE_DIR)) {
+          renderer_(context_, bound_.pipeline(), std::filesystem::path(AFTERSHADE_SOURCE_DIR), {}, drawing) {
         EXPECT_EQ(bound_.faults().find("error"), std::string::npos) << bound_.faults();
     }
     FrameResult run(const Capture& capture, const std::vector<std::string>& roles = {"color", "display"}) {

@@ -49,9 +49,8 @@ protected:
     LookRun run(const EffectFolder& effects, const std::string& steps, const RunChoices& choices = {}) {
         PipelineOptions options;
         for (const std::string& tap : choices.taps) options.taps.push_back(tap);
-        Bench bench(effects, look_of(steps), options, GetParam());
-        bench.renderer().fuse_passes(choices.fuses);
-        bench.renderer().set_audit(choices.audits);
+        Bench bench(effects, look_of(steps), options, GetParam(),
+                    {.fuses_passes = choices.fuses, .audits = choices.audits});
         LookRun result;
         Capture capture = colourful();
         for (int i = 0; i < choices.frames; ++i) {

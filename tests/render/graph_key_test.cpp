@@ -305,7 +305,7 @@ TEST(GraphFrameReader, MakesAKeyOfWhatItWasAskedAndOfNothingElse) {
                     [&] { capture.header.data_window.max_x = 15; });
     holds_not_after([&] { capture.images.erase("depth"); },
                     [&] { capture.images["depth"] = Image(16, 9, 1); });
-    holds_not_after([&] { inputs.previous = &capture; }, [&] { inputs.previous = nullptr; });
+    holds_not_after([&] { inputs.neighbours[-1] = &capture; }, [&] { inputs.neighbours.clear(); });
     holds_not_after([&] { roles = {"display"}; }, [&] { roles = {"color"}; });
 }
 

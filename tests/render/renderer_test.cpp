@@ -418,19 +418,17 @@ TEST_F(Renderer, CompilesPassesThatNothingNeedsOnlyWhereFaultsAreSought) {
                  "void main() { out_color = texelFetch(color, ivec2(0), 0) * 2.0; }\n#endif\n");
     const std::string look = look_of(R"({ "effect": "spare" })");
     expect_everywhere(Bench(effects_, look).color(plain()), {0.5f, 1, 2});
-    const auto fault = [&](const auto& choose) -> std::string {
-        Bench bench(effects_, look);
-        choose(bench.renderer());
+    const auto fault = [&](const RendererOptions& drawing) -> std::string {
         try {
-            bench.run(plain());
+            Bench(effects_, look, {}, gpu::Backend::software, drawing).run(plain());
         } catch (const Error& error) {
             return error.what();
         }
         return "none";
     };
-    const std::string kept = fault([](PipelineRenderer& renderer) { renderer.keep_steps(); });
+    const std::string kept = fault({.keeps_steps = true});
     EXPECT_NE(kept.find("[pass idle, llvmpipe"), std::string::npos) << kept;
-    const std::string checked = fault([](PipelineRenderer& renderer) { renderer.guard_loops(); });
+    const std::string checked = fault({.guards_loops = true});
     EXPECT_NE(checked.find("[pass idle, llvmpipe"), std::string::npos) << checked;
 }
 

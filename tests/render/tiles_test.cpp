@@ -226,8 +226,8 @@ TEST(PartialTextures, LetAnAuditFindThePassThatReadsWhatNoneDrew) {
     for (const bool peeks : {false, true}) {
         EffectFolder effects;
         effects.add("partial", kPartial, partial_shader(peeks));
-        Bench bench(effects, look_of(R"({"effect": "partial"})"));
-        bench.renderer().set_audit(true);
+        Bench bench(effects, look_of(R"({"effect": "partial"})"), {}, gpu::Backend::software,
+                    {.audits = true});
         const std::vector<AuditFinding> found = bench.run(picture_of_row(1)).audit;
         ASSERT_EQ(found.empty(), !peeks);
         if (!peeks) continue;
