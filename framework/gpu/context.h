@@ -38,7 +38,6 @@ std::vector<BackendReport> probe_backends();
 /// A context whose renderer another one is to have.
 struct SiblingOf {
     const class Context& context;
-    bool shares_objects = false;  ///< textures, buffers and programs; what a thread changes, it finishes
 };
 
 /// GL objects that are alive.

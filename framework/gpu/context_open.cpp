@@ -12,7 +12,6 @@
 #include "framework/base/text.h"
 #include "framework/gpu/context_internal.h"
 #include "framework/gpu/fork_guard.h"
-#include "framework/gpu/rasterizer_threads.h"
 #include "framework/gpu/self_test.h"
 #include "framework/gpu/texture.h"
 
@@ -108,7 +107,7 @@ Context::Context(SiblingOf other) {
     require_not_forked();
     Context::Impl::release_current();
     const Impl& sibling = *other.context.impl_;
-    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling(other.shares_objects));
+    impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling());
 }
 
 Context::Context(Backend backend, SelfTest when) {
@@ -145,8 +144,6 @@ void Context::test_once() {
         impl_->is_untested = true;
         throw;
     }
-    // Once they have drawn they are there, under their names.
-    if (impl_->info.software) spread_rasterizer_threads();
 }
 
 bool Context::zeroes_new_textures() {

@@ -145,9 +145,8 @@ public:
         open_context(shared.context);
     }
 
-    std::unique_ptr<Platform> sibling(bool shares_objects) const override {
-        auto made = std::unique_ptr<EglPlatform>(
-            new EglPlatform(egl_, name_, display_, shares_objects ? context_ : EGL_NO_CONTEXT));
+    std::unique_ptr<Platform> sibling() const override {
+        auto made = std::unique_ptr<EglPlatform>(new EglPlatform(egl_, name_, display_));
         made->make_current();
         return made;
     }
@@ -171,9 +170,9 @@ public:
 
 private:
     /// On a display that is initialised.
-    EglPlatform(const EglApi& egl, std::string name, EGLDisplay display, EGLContext shared)
+    EglPlatform(const EglApi& egl, std::string name, EGLDisplay display)
         : egl_(egl), name_(std::move(name)), display_(display) {
-        open_context(shared);
+        open_context(EGL_NO_CONTEXT);
     }
 
     void open_context(EGLContext shared) {

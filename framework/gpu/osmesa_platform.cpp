@@ -53,12 +53,9 @@ std::mutex& osmesa_mutex() {
     return mutex;
 }
 
-std::unique_ptr<Platform> made_current(OsmesaContext shared);
-
 class OsmesaPlatform : public Platform {
 public:
-    /// `shared`: whose objects it has; null: its own.
-    explicit OsmesaPlatform(OsmesaContext shared)
+    OsmesaPlatform()
         : destroy_(symbol<void (*)(OsmesaContext)>("OSMesaDestroyContext")),
           make_current_(symbol<MakeCurrent>("OSMesaMakeCurrent")),
           get_current_(symbol<OsmesaContext (*)()>("OSMesaGetCurrentContext")),
@@ -75,7 +72,7 @@ public:
                                   5,
                                   0};
         const std::lock_guard lock(osmesa_mutex());
-        context_ = create(attributes, shared);
+        context_ = create(attributes, nullptr);
         if (!context_)
             throw Error(ExitCode::gl, "OSMesa makes no GL 4.5 core context; install Mesa 22 or later");
     }
@@ -101,9 +98,7 @@ public:
         make_current_(nullptr, nullptr, 0, 0, 0);
     }
 
-    std::unique_ptr<Platform> sibling(bool shares_objects) const override {
-        return made_current(shares_objects ? context_ : nullptr);
-    }
+    std::unique_ptr<Platform> sibling() const override { return make_osmesa_platform(); }
 
     Proc proc(const char* name) const override { return get_proc_(name); }
 
@@ -118,16 +113,6 @@ private:
     std::array<unsigned char, 4 * kBufferSide * kBufferSide> buffer_{};
 };
 
-std::unique_ptr<Platform> made_current(OsmesaContext shared) {
-    auto platform = std::make_unique<OsmesaPlatform>(shared);
-    platform->make_current();
-    if (gl_string(*platform, kGlVersion).empty()) {
-        platform->release();
-        throw Error(ExitCode::gl, "OSMesaMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
-    }
-    return platform;
-}
-
 }  // namespace
 
 void load_osmesa() {
@@ -135,7 +120,13 @@ void load_osmesa() {
 }
 
 std::unique_ptr<Platform> make_osmesa_platform() {
-    return made_current(nullptr);
+    auto platform = std::make_unique<OsmesaPlatform>();
+    platform->make_current();
+    if (gl_string(*platform, kGlVersion).empty()) {
+        platform->release();
+        throw Error(ExitCode::gl, "OSMesaMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
+    }
+    return platform;
 }
 
 }  // namespace aftershade::gpu

@@ -31,7 +31,7 @@ public:
     virtual void release() noexcept = 0;
     /// Another of the same library and renderer, with objects of its own or with this one's; current in this
     /// thread once it is made. Throws Error(ExitCode::gl). [any thread]
-    virtual std::unique_ptr<Platform> sibling(bool shares_objects) const = 0;
+    virtual std::unique_ptr<Platform> sibling() const = 0;
     virtual Proc proc(const char* name) const = 0;
 };
 

@@ -213,26 +213,14 @@ void Handle<ObjectKind::texture>::remove(Context& context, unsigned int name) no
     context.gl().DeleteTextures(1, &name);
 }
 
-unsigned int Texture::made(Context& context, const TextureDesc& desc, const std::string& label) {
-    context.make_current();
-    check_desc(context.impl().limits, desc, label);
-    const GLuint name = make_storage(context.gl(), desc);
-    try {
-        context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label, desc.width, desc.height,
-                                  texture_format_name(desc.format), byte_size(desc) >> 20));
-    } catch (const Error&) {
-        if (context.impl().try_make_current()) context.gl().DeleteTextures(1, &name);
-        throw;
-    }
-    return name;
-}
-
 Texture::Texture(Context& context, const TextureDesc& desc, std::string label)
-    : Texture(context, desc, label, made(context, desc, label)) {}
-
-Texture::Texture(Context& context, const TextureDesc& desc, std::string label, unsigned int handle)
-    : handle_(context, handle), desc_(desc), label_(std::move(label)) {
-    set_label(context.gl(), GL_TEXTURE, handle, label_);
+    : desc_(desc), label_(std::move(label)) {
+    context.make_current();
+    check_desc(context.impl().limits, desc, label_);
+    handle_ = Handle<ObjectKind::texture>(context, make_storage(context.gl(), desc));
+    context.check(fmt::format("texture '{}', {}x{} {}, {} MiB", label_, desc.width, desc.height,
+                              texture_format_name(desc.format), byte_size(desc) >> 20));
+    set_label(context.gl(), GL_TEXTURE, handle(), label_);
 }
 
 Texture::Texture(const Texture& other, TextureFormat format, std::string label)

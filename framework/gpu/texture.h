@@ -72,12 +72,6 @@ public:
     CachedTexture cached() const { return {handle(), desc_.format, desc_.layers}; }  ///< for framework/gpu
 
 private:
-    friend class TexturesAhead;
-    /// The name of a texture that no object owns yet. Throws what the constructor does.
-    static unsigned int made(Context& context, const TextureDesc& desc, const std::string& label);
-    /// Of a name that another context made, which shares its objects with this one.
-    Texture(Context& context, const TextureDesc& desc, std::string label, unsigned int handle);
-
     Handle<ObjectKind::texture> handle_;
     TextureDesc desc_;
     std::string label_;

@@ -33,14 +33,14 @@ Memory* in_slot(std::vector<Memory>& slots, const std::vector<int>& slot_of, int
 
 }  // namespace
 
-Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory, gpu::TexturesAhead* ahead)
+Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
     : context_(context), graph_(std::move(graph)), compiled_(graph_.compile(shares_memory)), timer_(context) {
     for (const int index : compiled_.passes) {
         const Pass& pass = graph_.pass(index);
         if (runs_program(pass.kind) && !pass.program)
             throw GraphError(fmt::format("pass '{}' has no program", pass.name));
     }
-    allocate(ahead);
+    allocate();
     find_histories();
     sparse_ = std::make_unique<SparseClears>(context_, graph_, compiled_, slots_, buffer_slots_);
     clear_history();
@@ -48,19 +48,15 @@ Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory, 
     for (const int index : compiled_.passes) bound_.push_back(bind(index));
 }
 
-void Executor::allocate(gpu::TexturesAhead* ahead) {
+void Executor::allocate() {
     // Mesa does not check every allocation of its own.
     constexpr std::uint64_t kForMesa = 64ull * 1024 * 1024;
     require_address_space(compiled_.bytes + kForMesa, "the memory of a frame's passes");
     const auto labels = slot_labels(graph_.textures(), compiled_.slot_of_texture, compiled_.slots.size());
-    if (ahead) ahead->finish();
     // Pointers to slots are kept: they must not move.
     slots_.reserve(labels.size());
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        std::optional<gpu::Texture> made = ahead ? ahead->take(compiled_.slots[i], labels[i]) : std::nullopt;
-        if (made) slots_.push_back(std::move(*made));
-        else slots_.emplace_back(context_, compiled_.slots[i], labels[i]);
-    }
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        slots_.emplace_back(context_, compiled_.slots[i], labels[i]);
     for (std::size_t i = 0; i < graph_.textures().size(); ++i) {
         const int slot = compiled_.slot_of_texture[i];
         const gpu::TextureFormat format = graph_.textures()[i].desc.format;

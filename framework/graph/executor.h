@@ -13,7 +13,6 @@
 
 #include "framework/gpu/buffer.h"
 #include "framework/gpu/texture.h"
-#include "framework/gpu/textures_ahead.h"
 #include "framework/gpu/timer.h"
 #include "framework/graph/frame_graph.h"
 #include "framework/graph/pass_range.h"
@@ -31,10 +30,8 @@ class Executor {
 public:
     /// Allocates every texture and buffer; histories begin as zero. Throws Error(ExitCode::effect) when GL
     /// has no memory for them, GraphError if a pass that is not culled lacks its program. Without
-    /// `shares_memory` the last passes may run again over what the others made (run(), `range`). `ahead`: the
-    /// textures that are made already, of which it takes those that it needs; may be null.
-    Executor(gpu::Context& context, FrameGraph graph, bool shares_memory = true,
-             gpu::TexturesAhead* ahead = nullptr);
+    /// `shares_memory` the last passes may run again over what the others made (run(), `range`).
+    Executor(gpu::Context& context, FrameGraph graph, bool shares_memory = true);
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
@@ -130,7 +127,7 @@ private:
         }
     };
 
-    void allocate(gpu::TexturesAhead* ahead);
+    void allocate();
     void find_histories();
     void bind_clears();
     BoundPass bind(int index);

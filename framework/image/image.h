@@ -13,8 +13,6 @@
 #include <utility>
 #include <variant>
 
-#include "framework/base/spare_memory.h"
-
 namespace aftershade {
 
 enum class ComponentType { float32, uint32 };
@@ -32,9 +30,9 @@ struct Window {
 };
 
 /// Numbers in memory that is zero without being written: the system makes its pages where they are first
-/// touched, so the threads that fill an image make them, not its constructor. Or in memory of an image that
-/// is no more, as it left it. Not a vector, which goes through the elements one by one to make, copy and end
-/// them, however little there is to do for each. [value type: safe to read from several threads]
+/// touched, so the threads that fill an image make them, not its constructor. Not a vector, which goes
+/// through the elements one by one to make, copy and end them, however little there is to do for each. [value
+/// type: safe to read from several threads]
 template <typename Value>
 requires std::is_arithmetic_v<Value>
 class PixelArray {
@@ -42,9 +40,6 @@ public:
     PixelArray() = default;
     explicit PixelArray(std::size_t count)
         : values_(taken(std::calloc(count, sizeof(Value)), count)), count_(count) {}
-    explicit PixelArray(SpareMemory spare)
-        : values_(static_cast<Value*>(spare.memory), Free{spare.bytes}),
-          count_(spare.bytes / sizeof(Value)) {}
     PixelArray(const PixelArray& other)
         : values_(taken(std::malloc(other.count_ * sizeof(Value)), other.count_)), count_(other.count_) {
         if (count_ > 0) std::memcpy(values_.get(), other.values_.get(), count_ * sizeof(Value));
@@ -58,19 +53,12 @@ public:
     }
     ~PixelArray() = default;
 
-    /// The memory, which this no longer has.
-    SpareMemory release() { return {values_.release(), std::exchange(count_, 0) * sizeof(Value)}; }
-
     std::span<Value> values() { return {values_.get(), count_}; }
     std::span<const Value> values() const { return {values_.get(), count_}; }
 
 private:
     struct Free {
-        std::size_t spare_bytes = 0;  ///< 0 where the memory came from the system
-        void operator()(Value* memory) const noexcept {
-            if (spare_bytes > 0) give_spare_memory({memory, spare_bytes});
-            else std::free(memory);
-        }
+        void operator()(Value* memory) const noexcept { std::free(memory); }
     };
     using Memory = std::unique_ptr<Value[], Free>;
 
@@ -93,24 +81,6 @@ public:
         const std::size_t count = std::size_t(width) * std::size_t(height) * std::size_t(channels);
         if (type == ComponentType::float32) values_ = PixelArray<float>(count);
         else values_ = PixelArray<std::uint32_t>(count);
-    }
-
-    /// Floats that hold anything, in memory that goes to the next such image in the end: for what is written
-    /// as a whole, frame after frame. `threads` make the pages of new memory.
-    static Image unset(int width, int height, int channels, int threads) {
-        Image image;
-        image.width_ = width;
-        image.height_ = height;
-        image.channels_ = channels;
-        image.values_ = PixelArray<float>(take_spare_memory(
-            std::size_t(width) * std::size_t(height) * std::size_t(channels) * sizeof(float), threads));
-        return image;
-    }
-
-    /// Ends an image of floats, and keeps its memory for the next one that is `unset`.
-    static void give_memory(Image image) {
-        if (auto* const floats = std::get_if<PixelArray<float>>(&image.values_))
-            give_spare_memory(floats->release());
     }
 
     int width() const { return width_; }

@@ -99,9 +99,6 @@ struct FrameInputs {
     /// Fills the texture of a capture's image that is not in memory; false where it is. Empty: each is.
     std::function<bool(const std::string& role, int offset, gpu::Texture& texture)> fill{};
 
-    /// Called once the images are in textures and nothing reads them any more, if there is one sub-frame.
-    std::function<void()> uploaded{};
-
     const Capture* at(int offset) const;
     /// Whether there is a capture at that offset, with an image of that role.
     bool has_image(const std::string& role, int offset) const {

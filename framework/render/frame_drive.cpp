@@ -18,7 +18,7 @@ FrameInputs FrameSetting::inputs(const Capture& capture, int subframe, const Cap
 }
 
 DrawnFrame draw_frame(PipelineRenderer& renderer, const FrameSetting& setting, const TakeSubframe& take,
-                      const std::vector<std::string>& roles, const DrawOptions& options) {
+                      const std::vector<std::string>& roles, bool again) {
     DrawnFrame drawn;
     std::vector<graph::PassTime> times;
     std::vector<std::string> messages;
@@ -26,10 +26,9 @@ DrawnFrame draw_frame(PipelineRenderer& renderer, const FrameSetting& setting, c
     for (int subframe = 0; subframe < setting.subframe_count; ++subframe) {
         const std::shared_ptr<const Capture> capture = take(subframe);
         if (subframe == setting.subframe_count / 2) drawn.centre = capture;
-        FrameInputs inputs = setting.inputs(*capture, subframe, drawn.centre.get());
-        inputs.uploaded = options.uploaded;
+        const FrameInputs inputs = setting.inputs(*capture, subframe, drawn.centre.get());
         FrameResult result =
-            options.again ? renderer.render_again(inputs, roles, true) : renderer.render(inputs, roles, true);
+            again ? renderer.render_again(inputs, roles, true) : renderer.render(inputs, roles, true);
         times.insert(times.end(), result.times.begin(), result.times.end());
         messages.insert(messages.end(), result.messages.begin(), result.messages.end());
         if (subframe == 0) history_reset = result.history_reset;

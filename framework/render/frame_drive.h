@@ -28,15 +28,11 @@ struct DrawnFrame {
     FrameResult result;                     ///< with the times and the messages of all sub-frames
 };
 
-struct DrawOptions {
-    bool again = false;                ///< as PipelineRenderer::render_again
-    std::function<void()> uploaded{};  ///< FrameInputs::uploaded
-};
-
 using TakeSubframe = std::function<std::shared_ptr<const Capture>(int subframe)>;
 
-/// Takes and draws each sub-frame in turn. Throws what `take` and PipelineRenderer::render throw.
+/// Takes and draws each sub-frame in turn; `again` as PipelineRenderer::render_again. Throws what `take` and
+/// PipelineRenderer::render throw.
 DrawnFrame draw_frame(PipelineRenderer& renderer, const FrameSetting& setting, const TakeSubframe& take,
-                      const std::vector<std::string>& roles, const DrawOptions& options = {});
+                      const std::vector<std::string>& roles, bool again = false);
 
 }  // namespace aftershade

@@ -109,9 +109,8 @@ std::unique_ptr<BuiltGraph> GraphBuilder::build() {
     // Where threads compile, they draw each pass as well.
     if (tools_.primes && !built_->ahead)
         graph::prime(tools_.context, graph_, graph_.compile(!tools_.options.keeps_steps));
-    const std::unique_ptr<gpu::TexturesAhead> textures = programs_.take_textures();
-    built_->executor = std::make_unique<graph::Executor>(tools_.context, std::move(graph_),
-                                                         !tools_.options.keeps_steps, textures.get());
+    built_->executor =
+        std::make_unique<graph::Executor>(tools_.context, std::move(graph_), !tools_.options.keeps_steps);
     return std::move(built_);
 }
 

@@ -207,37 +207,28 @@ std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
     return others;
 }
 
-/// Begins what other threads do for a graph whose fusions all link; one that does not changes the textures,
-/// of which the executor then makes the others.
-void PassPrograms::work_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
-                              const std::map<int, Assembled>& others) {
-    if (tools_.compile_threads < 1) return;
+/// Of a graph whose fusions all link. Another thread's crash would be blamed on the pass that this one is at,
+/// so passes of foreign effects are not among them. Without a store nothing reaches this thread, which would
+/// compile all of it once more.
+void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
+                                 const std::map<int, Assembled>& others) {
+    if (tools_.compile_threads < 1 || !tools_.programs.store().is_on() || tools_.programs.is_guarding_loops())
+        return;
     graph::FrameGraph with_fusions = graph;
     for (const FusedAssembled& fused : fusions)
         if (!fused.texts.faults.has_errors())
             with_fusions.fuse(fused.passes(), fused.maker.pass(), fused.maker.fusion().targets);
     const graph::CompiledGraph compiled = with_fusions.compile(tools_.shares_memory);
-    if (gpu::TexturesAhead::is_useful(tools_.context, compiled.slots))
-        textures_ = std::make_unique<gpu::TexturesAhead>(tools_.context, compiled.slots);
-    compile_ahead(with_fusions, compiled, fusions, others);
-}
-
-/// Another thread's crash would be blamed on the pass that this one is at, so passes of foreign effects are
-/// not among them. Without a store nothing reaches this thread, which would compile all of it once more.
-void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const graph::CompiledGraph& compiled,
-                                 const std::vector<FusedAssembled>& fusions,
-                                 const std::map<int, Assembled>& others) {
-    if (!tools_.programs.store().is_on() || tools_.programs.is_guarding_loops()) return;
     std::map<int, PassToCompile> missing;  // in the order of the passes
     const auto add = [&](int pass, const Assembled& texts, const graph::Pass& shape) {
         if (texts.faults.has_errors() || added_.at(pass).step->is_foreign ||
             tools_.programs.has(*texts.sources))
             return;
-        missing[pass] = {shape.name, texts.sources, graph::shape_of(graph, compiled, shape),
+        missing[pass] = {shape.name, texts.sources, graph::shape_of(with_fusions, compiled, shape),
                          std::ranges::binary_search(compiled.passes, pass)};
     };
     for (const FusedAssembled& fused : fusions) add(fused.passes().back(), fused.texts, fused.maker.pass());
-    for (const auto& [pass, texts] : others) add(pass, texts, graph.pass(pass));
+    for (const auto& [pass, texts] : others) add(pass, texts, with_fusions.pass(pass));
     if (missing.size() < 2) return;
     std::vector<PassToCompile> passes;
     for (auto& [index, pass] : missing) passes.push_back(std::move(pass));
@@ -250,7 +241,7 @@ void PassPrograms::finish(graph::FrameGraph& graph, std::vector<BlockBinding>& b
     needed_ = compiled.passes;
     std::vector<FusedAssembled> fusions = assemble_fusions(graph, compiled, divide_at);
     std::map<int, Assembled> others = assemble_others(graph, fusions);
-    work_ahead(graph, fusions, others);
+    compile_ahead(graph, fusions, others);
     tools_.context.test_once();  // while the threads compile
     for (FusedAssembled& fused : fusions) fuse(graph, fused, blocks);
     for (const auto& [pass, added] : added_) {

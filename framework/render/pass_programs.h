@@ -9,7 +9,6 @@
 
 #include "framework/base/status.h"
 #include "framework/effect/pass_program.h"
-#include "framework/gpu/textures_ahead.h"
 #include "framework/graph/fusion.h"
 #include "framework/look/pipeline.h"
 #include "framework/render/compile_ahead.h"
@@ -33,7 +32,7 @@ public:
         /// Whether passes that nothing needs get programs, too, so that the faults of their shaders are
         /// found.
         bool compiles_culled = false;
-        int compile_threads = 0;  ///< beside the caller's; with one, another makes textures
+        int compile_threads = 0;  ///< beside the caller's
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 
@@ -47,9 +46,6 @@ public:
     void finish(graph::FrameGraph& graph, std::vector<BlockBinding>& blocks, int divide_at);
     /// After finish(): what still compiles for the first draws; nullptr where nothing does.
     std::unique_ptr<CompileAhead> take_ahead() { return std::move(ahead_); }
-    /// After finish(): the textures of the graph that a thread makes beside the caller's; nullptr where it
-    /// does not.
-    std::unique_ptr<gpu::TexturesAhead> take_textures() { return std::move(textures_); }
 
 private:
     struct Added {
@@ -64,10 +60,8 @@ private:
     std::map<int, Assembled> assemble_others(graph::FrameGraph& graph,
                                              const std::vector<FusedAssembled>& fusions) const;
     void load_images(const graph::FrameGraph& graph, graph::Pass& pass, ShaderSource& source) const;
-    void work_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
-                    const std::map<int, Assembled>& others);
-    void compile_ahead(const graph::FrameGraph& graph, const graph::CompiledGraph& compiled,
-                       const std::vector<FusedAssembled>& fusions, const std::map<int, Assembled>& others);
+    void compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
+                       const std::map<int, Assembled>& others);
     void fuse(graph::FrameGraph& graph, FusedAssembled& fused, std::vector<BlockBinding>& blocks);
     int blocks_of(const graph::FrameGraph& graph, int pass);
     int count_blocks(const graph::FrameGraph& graph, int pass);
@@ -81,7 +75,6 @@ private:
     std::map<int, std::vector<int>> unused_;  // uniform blocks, by pass
     std::map<int, int> block_counts_;         // likewise
     std::unique_ptr<CompileAhead> ahead_;
-    std::unique_ptr<gpu::TexturesAhead> textures_;
 };
 
 }  // namespace aftershade

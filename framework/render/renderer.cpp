@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "framework/base/error.h"
-#include "framework/base/spare_memory.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
 #include "framework/look/pixel_shape.h"
@@ -71,9 +70,7 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
     programs_->guard_loops();
 }
 
-PipelineRenderer::~PipelineRenderer() {
-    drop_spare_memory();
-}
+PipelineRenderer::~PipelineRenderer() = default;
 
 void PipelineRenderer::resolve(const FrameInputs& frame) {
     params_.clear();
@@ -245,7 +242,6 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
         for (const GraphBinding& binding : built_->bindings)
             if (const auto* input = std::get_if<CaptureBinding>(&binding))
                 audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
-    if (frame.uploaded && frame.subframe_count == 1) frame.uploaded();
     run_passes(timed, {first_pass, -1}, result);
     read_results(roles, timed, result);
     if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});

@@ -25,8 +25,7 @@ struct ReadImage {
 /// Floats of a texture that has as many channels.
 ReadImage read_floats(const gpu::Texture& texture) {
     const gpu::TextureDesc& desc = texture.desc();
-    ReadImage read{Image::unset(desc.width, desc.height, gpu::channel_count(desc.format), exr_threads()),
-                   true};
+    ReadImage read{Image(desc.width, desc.height, gpu::channel_count(desc.format)), true};
     texture.read_floats(read.image.floats(), [&](std::span<const float> values) {
         read.is_finite = read.is_finite && are_finite(values);
     });

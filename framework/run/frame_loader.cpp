@@ -141,29 +141,9 @@ std::optional<Capture> FrameLoader::outline(std::size_t index) const {
 
 void FrameLoader::request(int file) {
     if (reads_.contains(file)) return;
-    reads_[file] = std::async(std::launch::async, [this, file] {
+    reads_[file] = std::async(std::launch::async, [this, file]() -> CapturePointer {
                        return std::make_shared<Capture>(read(file));
                    }).share();
-}
-
-void FrameLoader::give_images(std::size_t index, const std::vector<std::string>& roles) {
-    const int file = files_.number(run_.frames[index], 0);
-    const auto wants_it = [&](int frame) {
-        const std::vector<int> numbers = files_.numbers(frame);
-        return std::ranges::find(numbers, file) != numbers.end();
-    };
-    // As far ahead as an input's `frame` goes.
-    constexpr std::size_t kMostFrames = 3;
-    const auto later = std::span(run_.frames).subspan(index + 1);
-    const bool is_wanted = std::ranges::any_of(later.first(std::min(kMostFrames, later.size())), wants_it);
-    if (is_wanted || run_.missing == MissingFrame::hold || run_.region) return;
-    const auto read = reads_.extract(file);
-    if (!read) return;
-    auto& images = read.mapped().get()->images;
-    for (const std::string& role : roles) {
-        if (!pipeline_.writes_role(role)) continue;
-        if (auto image = images.extract(role)) Image::give_memory(std::move(image.mapped()));
-    }
 }
 
 FrameLoader::CapturePointer FrameLoader::get(int file) {

@@ -38,10 +38,6 @@ public:
     std::optional<Capture> outline(std::size_t index) const;
     /// One sub-frame with its neighbours; its number is the frame's. Throws what reading threw.
     CapturePointer take(std::size_t index, int subframe);
-    /// The pipeline has read the `index`-th frame, and nobody else will: gives the memory of those images of
-    /// which it writes its own in `roles` to the next result, since making the pages of new memory takes
-    /// longer than reading back into it. Does nothing where another frame may want the capture.
-    void give_images(std::size_t index, const std::vector<std::string>& roles);
     using Neighbours = std::map<int, CapturePointer>;  ///< by offset
     /// Those of the same shot that some input wants and whose files are there.
     Neighbours neighbours(std::size_t index);
@@ -66,7 +62,7 @@ private:
     FrameFiles files_;
     std::vector<std::string> roles_;
     std::optional<RegionNeeds> region_needs_;
-    std::map<int, std::shared_future<std::shared_ptr<Capture>>> reads_;  // by file
+    std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
     CapturePointer last_;
     mutable std::atomic<double> busy_ms_ = 0;
     mutable ObjectMatches objects_;

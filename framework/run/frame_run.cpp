@@ -80,9 +80,7 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
         add_new(said, header.differences);
         return capture;
     };
-    DrawOptions draw;
-    draw.uploaded = [&] { loader_.give_images(index, roles); };
-    DrawnFrame drawn = draw_frame(renderer_, setting, take, roles, draw);
+    DrawnFrame drawn = draw_frame(renderer_, setting, take, roles);
     Rendered rendered = finished(std::move(drawn.centre), std::move(drawn.result));
     rendered.message = joined(said, "; ", "; ");
     rendered.differences = std::move(differences);

@@ -122,7 +122,7 @@ FrameResult PictureMaker::draw_subframes(Scaled& scaled, const std::vector<std::
     setting.scale = 1.0 / loaded.run.scale_divisor;
     setting.fps = sequence_.fps;
     const auto take = [&](int subframe) { return loaded.captures[std::size_t(subframe)]; };
-    return draw_frame(*scaled.renderer, setting, take, roles, {start == Start::same_frame, {}}).result;
+    return draw_frame(*scaled.renderer, setting, take, roles, start == Start::same_frame).result;
 }
 
 PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {

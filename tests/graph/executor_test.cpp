@@ -59,26 +59,6 @@ layout(std430, binding = 0) buffer Counter { uint total; };)",
     }
 }
 
-TEST_P(ExecutorOn, TakesTexturesThatAreMadeAlready) {
-    using namespace std::chrono_literals;
-    const gpu::Program program = draws("result = texelFetch(source, p, 0).r + 1.0;");
-    Graph graph;
-    const TextureHandle input = graph.import_texture("input", kSmall);
-    const TextureHandle sum =
-        graph.add_pass(draw_of("add", program, {input}, graph.fresh("sum", kSmall))).targets[0];
-    graph.keep(sum);
-    // One that it needs, and one that it does not.
-    constexpr gpu::TextureDesc kOther{.width = 7, .height = 7, .format = gpu::TextureFormat::r32f};
-    gpu::TexturesAhead ahead(context(), {kOther, kSmall});
-    for (int i = 0; i < 6000 && ahead.textures_made() < 2; ++i) std::this_thread::sleep_for(10ms);
-    Executor executor(context(), std::move(graph), true, &ahead);
-    EXPECT_FALSE(ahead.take(kSmall, "taken already"));
-    EXPECT_TRUE(ahead.take(kOther, "left"));
-    executor.texture(input)->upload(Floats(kWidth * kHeight, 2));
-    executor.run(false);
-    EXPECT_EQ(executor.texture(sum)->read_floats(), Floats(kWidth * kHeight, 3));
-}
-
 TEST_P(ExecutorOn, RunsAChainOfFloatsAndIntegersInSharedMemory) {
     const gpu::Program halves = draws("result = texelFetch(source, p, 0).r * 0.5;"), more = fragment(R"(
 layout(binding = 0) uniform sampler2D source;

@@ -61,24 +61,5 @@ TEST(AnImage, TakesTheValuesOfAnotherOfAnotherSizeAndTypeAndOfItself) {
     EXPECT_TRUE(none.floats().empty());
 }
 
-TEST(Image, HasTheMemoryOfTheUnsetOneBefore) {
-    const void* memory = nullptr;
-    {
-        Image image = Image::unset(640, 480, 4, 2);
-        EXPECT_EQ(image.floats().size(), std::size_t(640 * 480 * 4));
-        image.floats().back() = 3;
-        memory = image.floats().data();
-        const Image copy = image;
-        EXPECT_NE(copy.floats().data(), memory);
-        EXPECT_EQ(copy.floats().back(), 3);
-        const Image moved = std::move(image);
-        EXPECT_EQ(moved.floats().data(), memory);
-    }
-    EXPECT_EQ(Image::unset(640, 480, 4, 1).floats().data(), memory);
-    // What promises zeros has them.
-    const Image zeros(640, 480, 4);
-    EXPECT_EQ(zeros.floats().back(), 0);
-}
-
 }  // namespace
 }  // namespace aftershade

@@ -94,21 +94,5 @@ TEST_F(Runs, FailWhereTheLastOutputCannotBeWrittenThoughTheContextHasEnded) {
     EXPECT_THROW(endings(), Error);
 }
 
-TEST_F(Runs, GiveTheMemoryOfAFrameToItsResultOnceTheLastHasReadIt) {
-    Diagnostics faults;
-    const auto sequence = open_sequence((folder_ / "in_#.exr").string(), faults);
-    const CaptureReader reader(*sequence, read_profiles(kRoot / "profiles", faults), {});
-    const Bound bound(effects_, look_of(R"({ "effect": "blend" })"));
-    for (const bool makes_color : {false, true}) {
-        FrameLoader loader(*sequence, reader, bound.pipeline(), options_, {"color", "depth"});
-        const auto first = loader.take(0, 0);
-        loader.give_images(
-            0, makes_color ? std::vector<std::string>{"color", "depth"} : std::vector<std::string>{"depth"});
-        EXPECT_EQ(first->images.contains("color"), !makes_color);
-        EXPECT_TRUE(first->images.contains("depth")) << "no step writes depth";
-        EXPECT_TRUE(loader.take(1, 0)->images.contains("color"));
-    }
-}
-
 }  // namespace
 }  // namespace aftershade::test
