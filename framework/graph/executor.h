@@ -29,7 +29,7 @@ struct PassTime {
 /// [the context's thread]
 class Executor {
 public:
-    /// Allocates every texture and buffer; histories begin as zero. Throws Error(ExitCode::effect) when GL
+    /// Allocates every texture and buffer; histories begin as zero. Throws Error(ErrorKind::effect) when GL
     /// has no memory for them, GraphError if a pass that is not culled lacks its program. Without
     /// `shares_memory` the last passes may run again over what the others made (run(), `range`). `ahead`: the
     /// textures that are made already, of which it takes those that it needs; may be null.
