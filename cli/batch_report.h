@@ -6,6 +6,7 @@
 
 #include "framework/base/error.h"
 #include "framework/base/status.h"
+#include "framework/batch/process_codes.h"
 #include "framework/run/run_frames.h"
 
 namespace aftershade::cli {

@@ -56,7 +56,7 @@ void print_differences(const CaptureHeader& header);
 /// Its message counts the faults, which have been printed.
 struct FaultyDocuments : Error {
     FaultyDocuments(const std::string& message, std::string faults, bool report)
-        : Error(ExitCode::usage, message), details(std::move(faults)), refuses_report(report) {}
+        : Error(ErrorKind::usage, message), details(std::move(faults)), refuses_report(report) {}
     std::string details;          ///< a line for each fault
     bool refuses_report = false;  ///< the name of --report is at fault: nothing may be written to it
 };

@@ -88,8 +88,9 @@ ExitCode check_velocity_of_files(const std::vector<std::string>& files, const Ca
         if (!json) fmt::print("{}\n", format_velocity_check(check));
     }
     if (document["checks"].empty())
-        throw Error(ExitCode::capture, files[1] + ": the profile '" + document["profile"].get<std::string>() +
-                                           "' finds no motion vectors");
+        throw Error(ErrorKind::capture, files[1] + ": the profile '" +
+                                            document["profile"].get<std::string>() +
+                                            "' finds no motion vectors");
     if (json) fmt::print("{}\n", document.dump(2));
     return all_confirmed ? ExitCode::done : ExitCode::partial;
 }

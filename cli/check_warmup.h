@@ -6,6 +6,7 @@
 
 #include "cli/plugin_options.h"
 #include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade::cli {

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 5> kVariables{"AFTERSHADE_ALLOW_PATH", "A
 
 /// Words that a zero ends.
 std::vector<std::string> words_of(const char* file) {
-    const std::string text = read_text_file(file, ExitCode::effect);
+    const std::string text = read_text_file(file, ErrorKind::effect);
     std::vector<std::string> words;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\0', at), text.size());

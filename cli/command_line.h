@@ -7,7 +7,7 @@
 
 namespace aftershade::cli {
 
-/// The words that this process was started with. Throws Error(ExitCode::effect) without /proc.
+/// The words that this process was started with. Throws Error(ErrorKind::effect) without /proc.
 std::vector<std::string> own_arguments();
 
 /// An option and its value, such as {"--frames", "5-10"}; with "" the option goes.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/compare_options.h"
+#include "cli/exit_code.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/cores.h"
@@ -43,7 +44,7 @@ void check_labels(const Comparison& comparison) {
     };
     refuse("--role ", comparison.unknown_roles);
     refuse("--layer ", comparison.unknown_layers);
-    if (!text.empty()) throw Error(kCompareUsage, text);
+    if (!text.empty()) throw CodedError(kCompareUsage, text);
 }
 
 Verdict compare(const CompareOptions& options, const CompareRules& rules) {
@@ -76,8 +77,9 @@ ExitCode run(const CompareOptions& options) {
     Verdict verdict = Verdict::file_error;
     try {
         verdict = compare(options, rules_of(options));
+    } catch (const CodedError&) {
+        throw;
     } catch (const Error& error) {
-        if (error.exit_code() == kCompareUsage) throw;
         verdict = file_error(error.what());
     } catch (const std::bad_alloc&) {
         verdict = file_error("out of memory");

@@ -27,7 +27,7 @@ void add_compare_area_options(CLI::App& app, CompareAreaOptions& options);
 std::vector<std::filesystem::path> compare_area_inputs(const CompareAreaOptions& options);
 
 /// Reads masks and objects. Faults of words go to `diagnostics`; a file that cannot be read is
-/// Error(ExitCode::capture).
+/// Error(ErrorKind::capture).
 void read_compare_areas(const CompareAreaOptions& options, const std::string& reference, CompareRules& rules,
                         Diagnostics& diagnostics);
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
+#include "cli/exit_code.h"
 #include "framework/base/input_files.h"
 
 namespace aftershade::cli {
@@ -218,11 +218,7 @@ CompareRules rules_of(const CompareOptions& options) {
     if ((rules.fail_ssim || rules.warn_ssim) && !rules.ssim)
         diagnostics.error({"--no-ssim"}, "--fail-ssim and --warn-ssim need SSIM");
     if (!diagnostics.has_errors()) return rules;
-    std::ostringstream text;
-    diagnostics.print(text);
-    std::string message = text.str();
-    if (message.ends_with('\n')) message.pop_back();
-    throw Error(kCompareUsage, message);
+    throw CodedError(kCompareUsage, diagnostics);
 }
 
 }  // namespace aftershade::cli

@@ -9,6 +9,7 @@
 #include "cli/compare_areas.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "framework/compare/compare_files.h"
 
 namespace CLI {
@@ -47,7 +48,7 @@ struct CompareOptions {
 
 void add_compare_options(CLI::App& app, CompareOptions& options);
 
-/// Throws Error(kCompareUsage) with every fault of the words, Error(ExitCode::capture) where a mask or
+/// Throws CodedError(kCompareUsage) with every fault of the words, Error(ErrorKind::capture) where a mask or
 /// objects cannot be read.
 CompareRules rules_of(const CompareOptions& options);
 

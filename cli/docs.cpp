@@ -56,7 +56,7 @@ void add_pages_with_tables(const fs::path& folder, std::map<std::string, std::st
         const std::string name = "../" + entry.path().filename().string();
         if (entry.path().extension() != ".md" || pages.contains(name)) continue;
         std::vector<std::string> faults;
-        pages[name] = grammar::with_tables(read_text_file(entry.path(), ExitCode::usage), tables, faults);
+        pages[name] = grammar::with_tables(read_text_file(entry.path(), ErrorKind::usage), tables, faults);
         for (const std::string& fault : faults) diagnostics.error({entry.path().string()}, fault);
     }
     check_that_all_are_shown(tables, pages, folder, diagnostics);
@@ -95,7 +95,7 @@ ExitCode docs(const DocsOptions& options) {
     bool same = true;
     for (const auto& [name, text] : made) {
         const fs::path file = (fs::path(options.folder) / name).lexically_normal();
-        if (fs::exists(file, failure) && read_text_file(file, ExitCode::usage) == text) continue;
+        if (fs::exists(file, failure) && read_text_file(file, ErrorKind::usage) == text) continue;
         same = false;
         if (!options.check) write_text_file(path_below(file.parent_path(), file.filename()), text);
         fmt::print("{}{}\n", file.string(),

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/run_arguments.h"
+#include "framework/batch/process_codes.h"
 
 namespace aftershade::cli {
 

@@ -1,23 +1,31 @@
-// From the library's kinds of errors to the program's exit codes (docs/exit-codes.md).
+// From kinds of errors to the program's exit codes (docs/exit-codes.md).
 #pragma once
+
+#include <exception>
+#include <string>
 
 #include "aftershade/error.h"
 #include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
+#include "framework/run/run_report.h"
 
 namespace aftershade::cli {
 
-constexpr ExitCode exit_code_of(host::ErrorKind kind) {
-    switch (kind) {
-        case host::ErrorKind::usage:
-        case host::ErrorKind::document: return ExitCode::usage;
-        case host::ErrorKind::capture: return ExitCode::capture;
-        case host::ErrorKind::gl: return ExitCode::gl;
-        case host::ErrorKind::output: return ExitCode::output;
-        case host::ErrorKind::memory: return ExitCode::memory;
-        case host::ErrorKind::interrupted: return ExitCode::interrupted;
-        case host::ErrorKind::effect: break;
-    }
-    return ExitCode::effect;
-}
+/// An error whose code its kind does not say: `compare` and `golden` have idiff's.
+class CodedError : public Error {
+public:
+    CodedError(ExitCode code, const std::string& message) : Error(ErrorKind::usage, message), code_(code) {}
+    CodedError(ExitCode code, const Diagnostics& faults) : Error(ErrorKind::usage, faults), code_(code) {}
+    ExitCode code() const { return code_; }
+
+private:
+    ExitCode code_;
+};
+
+ExitCode exit_code_of(ErrorKind kind);
+ExitCode exit_code_of(host::ErrorKind kind);
+/// Of an Error its own, of others memory or effect.
+ExitCode exit_code_of(const std::exception& error);
+ExitCode exit_code_of(const RunReport& report);
 
 }  // namespace aftershade::cli

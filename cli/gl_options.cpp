@@ -22,8 +22,8 @@ gpu::Backend chosen_backend(const std::string& option) {
     const std::string name = from_environment ? environment : option.empty() ? "auto" : option;
     const auto backend = gpu::parse_backend(name);
     if (!backend)
-        throw Error(ExitCode::usage, std::string(from_environment ? "AFTERSHADE_BACKEND" : "--backend") +
-                                         ": '" + name + "' is not one of " + gpu::backend_names());
+        throw Error(ErrorKind::usage, std::string(from_environment ? "AFTERSHADE_BACKEND" : "--backend") +
+                                          ": '" + name + "' is not one of " + gpu::backend_names());
     return *backend;
 }
 

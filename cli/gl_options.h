@@ -16,7 +16,7 @@ std::string backend_help(const std::string& by_default);
 
 void add_backend_option(CLI::App& app, std::string& backend);
 
-/// The option's, else that of $AFTERSHADE_BACKEND, else auto. Throws Error(ExitCode::usage) for an unknown
+/// The option's, else that of $AFTERSHADE_BACKEND, else auto. Throws Error(ErrorKind::usage) for an unknown
 /// name, saying where it came from.
 gpu::Backend chosen_backend(const std::string& option);
 

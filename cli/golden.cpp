@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/compare_options.h"
+#include "cli/exit_code.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
@@ -86,8 +87,7 @@ void write_early_end(const GoldenOptions& options, const std::string& message, i
 
 /// The code that this verb ends with.
 ExitCode own_code(const Error& error) {
-    if (error.exit_code() == kCompareUsage) return kCompareUsage;
-    return error.exit_code() == ExitCode::usage ? kCompareUsage : ExitCode(int(Verdict::file_error));
+    return error.kind() == ErrorKind::usage ? kCompareUsage : ExitCode(int(Verdict::file_error));
 }
 
 void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result,
@@ -118,12 +118,12 @@ void print_notes(const GoldenSuiteResult& result) {
                              bare.size() > 1 ? "them" : "it");
 }
 
-/// Throws Error(kCompareUsage).
+/// Throws CodedError(kCompareUsage).
 void refuse_outputs(const Diagnostics& diagnostics) {
     std::string text;
     for (const Diagnostic& fault : diagnostics.all())
         text += (text.empty() ? "" : "\n") + to_string(fault.place) + ": error: " + fault.message;
-    if (!text.empty()) throw Error(kCompareUsage, text);
+    if (!text.empty()) throw CodedError(kCompareUsage, text);
 }
 
 void check_outputs(const GoldenOptions& options, const GoldenSuite& suite) {
@@ -143,7 +143,7 @@ ExitCode run_prepared(const GoldenOptions& options, const GoldenSetup& setup) {
     if (!options.report.empty()) {
         std::error_code failure;
         fs::create_directories(options.report, failure);
-        if (failure) throw Error(ExitCode::output, "--report " + options.report + ": " + failure.message());
+        if (failure) throw Error(ErrorKind::output, "--report " + options.report + ": " + failure.message());
     }
     print_head(setup.context);
     const GoldenSuiteResult result = run_golden_suite(
@@ -203,7 +203,7 @@ ExitCode approve(const GoldenOptions& options) {
     print_head(setup.context);
     if (!options.any_renderer)
         if (const std::string why = foreign_goldens(setup.suite, setup.context.options); !why.empty())
-            throw Error(kCompareUsage, why);
+            throw CodedError(kCompareUsage, why);
     GoldenApproveOptions approve_options;
     approve_options.run = setup.context.options;
     approve_options.add = options.add;
@@ -254,9 +254,9 @@ ExitCode with_own_codes(const std::function<ExitCode()>& work) {
     try {
         return work();
     } catch (const Error& error) {
-        throw Error(own_code(error), error.what());
+        throw CodedError(own_code(error), error.what());
     } catch (const fs::filesystem_error& error) {
-        throw Error(ExitCode(int(Verdict::file_error)), error.what());
+        throw CodedError(ExitCode(int(Verdict::file_error)), error.what());
     }
 }
 

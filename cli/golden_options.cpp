@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <sstream>
 #include <thread>
 
 #include "cli/compare_options.h"
 #include "cli/effect_options.h"
+#include "cli/exit_code.h"
 #include "cli/gl_options.h"
 #include "framework/base/text.h"
 #include "framework/batch/worker.h"
@@ -18,14 +18,6 @@ namespace aftershade::cli {
 namespace fs = std::filesystem;
 
 namespace {
-
-[[noreturn]] void refuse(const Diagnostics& diagnostics) {
-    std::ostringstream text;
-    diagnostics.print(text);
-    std::string message = text.str();
-    if (message.ends_with('\n')) message.pop_back();
-    throw Error(kCompareUsage, message);
-}
 
 /// The last line that git prints; "" where git is absent or fails.
 std::string line_of_git(const fs::path& folder, const std::vector<std::string>& words) {
@@ -50,7 +42,7 @@ gpu::Backend backend_of(const GoldenOptions& options) {
     try {
         return chosen_backend(options.backend);
     } catch (const Error& error) {
-        throw Error(kCompareUsage, error.what());
+        throw CodedError(kCompareUsage, error.what());
     }
 }
 
@@ -98,7 +90,7 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     GoldenSetup setup;
     std::optional<GoldenSuite> suite = read_golden_suite(options.suite, diagnostics);
     check_words(options, suite.value_or(GoldenSuite{}), diagnostics);
-    if (!suite || diagnostics.has_errors()) refuse(diagnostics);
+    if (!suite || diagnostics.has_errors()) throw CodedError(kCompareUsage, diagnostics);
     setup.suite = std::move(*suite);
     const gpu::Backend backend = backend_of(options);
 

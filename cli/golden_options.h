@@ -32,8 +32,9 @@ struct GoldenOptions {
 
 void add_shared_golden_options(CLI::App& app, GoldenOptions& options);
 
-/// The suite, what its workers will draw with, and what reports write about both. Throws Error(kCompareUsage)
-/// with every fault of documents and words, Error(ExitCode::gl) without a usable backend.
+/// The suite, what its workers will draw with, and what reports write about both. Throws
+/// CodedError(kCompareUsage) with every fault of documents and words, Error(ErrorKind::gl) without a usable
+/// backend.
 struct GoldenSetup {
     GoldenSuite suite;
     GoldenReportContext context;

@@ -37,21 +37,21 @@ void run_dot(const std::string& dot_file, const std::string& svg_file) {
     int status = 0;
     if (posix_spawnp(&child, "dot", nullptr, nullptr, arguments, environ) != 0 ||
         waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw Error(ExitCode::output, std::string("--graph: ") + kNeedsDot);
+        throw Error(ErrorKind::output, std::string("--graph: ") + kNeedsDot);
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
     std::ofstream out(path, std::ios::binary);
     out << text;
     out.close();
-    if (!out) throw Error(ExitCode::output, path.string() + ": cannot be written");
+    if (!out) throw Error(ErrorKind::output, path.string() + ": cannot be written");
 }
 
 }  // namespace
 
 void require_graph_writer(const std::string& path) {
     if (path.ends_with(".svg") && !is_on_path("dot"))
-        throw Error(ExitCode::output, "--graph " + path + ": " + kNeedsDot);
+        throw Error(ErrorKind::output, "--graph " + path + ": " + kNeedsDot);
 }
 
 void write_graph(const std::string& path, const std::string& dot) {

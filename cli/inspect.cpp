@@ -75,7 +75,7 @@ InspectedPart inspect_part(const ExrFile& file, int index, const InspectOptions&
     return part;
 }
 
-/// Throws Error(ExitCode::capture) where the frame's file, or that of one of its roles, cannot be opened.
+/// Throws Error(ErrorKind::capture) where the frame's file, or that of one of its roles, cannot be opened.
 Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReader& reader,
                          const InspectOptions& options) {
     const ReadLimits& limits = options.capture.limits;
@@ -95,7 +95,7 @@ Inspection inspect_frame(const Sequence& sequence, int frame, const CaptureReade
         // The files are sound, but what they mean is not known: no profile, several, no such view; or of the
         // profile all but a Cryptomatte's manifest.
         if (inspection.capture) inspection.warnings.emplace_back(error.what());
-        inspection.no_profile_code = error.exit_code();
+        inspection.no_profile_kind = error.kind();
         inspection.no_profile_message = error.what();
         inspection.no_profile_reason = without_path(error.what(), inspection.file);
     }
@@ -223,15 +223,15 @@ void find_depth_kind_of(const CaptureReader& reader, Inspection& inspection) {
 /// The files are shown, but what the user asked of them is not there: a layer, a view, the role of a file.
 void require_what_was_asked(const Sequence& sequence, const Inspection& inspection) {
     const bool asks = !sequence.layer.empty() || !sequence.view.empty() || !sequence.role_files.empty();
-    if (!inspection.capture && asks) throw Error(inspection.no_profile_code, inspection.no_profile_message);
+    if (!inspection.capture && asks) throw Error(inspection.no_profile_kind, inspection.no_profile_message);
 }
 
 /// "" is the only Cryptomatte, or the one of objects.
 void add_coverage(const std::string& name, const CaptureReader& reader, Inspection& inspection) {
     if (!inspection.no_profile_message.empty())
-        throw Error(inspection.no_profile_code, inspection.no_profile_message);
+        throw Error(inspection.no_profile_kind, inspection.no_profile_message);
     if (inspection.cryptomattes.empty())
-        throw Error(ExitCode::capture, inspection.file.string() + ": has no Cryptomatte");
+        throw Error(ErrorKind::capture, inspection.file.string() + ": has no Cryptomatte");
     const int frame = inspection.capture->frame;
     inspection.coverage_of = reader.cryptomatte_name(frame, name);
     inspection.coverage = reader.cryptomatte_coverage(frame, inspection.coverage_of);
@@ -263,7 +263,7 @@ void write_contact_sheet(const std::string& path, const CaptureHeader& header, c
         capture = read_role_by_role(header, reader, unreadable);
     }
     if (capture.images.empty() && unreadable.empty())
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     header.path.string() + ": has no role, so there is nothing to put on a contact sheet");
     write_png(path, draw_contact_sheet(capture, unreadable));
 }
@@ -296,11 +296,11 @@ ExitCode inspect(const InspectOptions& options) {
     std::cout << (options.json ? json_of(inspection) + "\n" : text_of(inspection)) << std::flush;
     const std::string file = inspection.file.string() + ": ";
     if (const InspectedChannel* channel = inspection.first_unreadable())
-        throw Error(ExitCode::capture, file + channel->reason);
+        throw Error(ErrorKind::capture, file + channel->reason);
     require_what_was_asked(*sequence, inspection);
     if (options.contact_sheet.empty()) return ExitCode::done;
     if (!inspection.capture)
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     file + inspection.no_profile_reason + ", so there is no role for a contact sheet");
     write_contact_sheet(options.contact_sheet, *inspection.capture, reader);
     std::cerr << "contact sheet: " << options.contact_sheet << "\n";
@@ -342,7 +342,7 @@ Verb add_inspect(CLI::App& app) {
         if (!options->check_velocity.empty())
             return check_velocity_of_files(options->check_velocity, options->capture, options->json);
         if (options->capture.capture.empty())
-            throw Error(ExitCode::usage, "inspect: name a capture, or two files with --check-velocity");
+            throw Error(ErrorKind::usage, "inspect: name a capture, or two files with --check-velocity");
         return inspect(*options);
     };
 }

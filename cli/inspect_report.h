@@ -29,7 +29,7 @@ struct Inspection {
     std::optional<CaptureHeader> capture;  ///< nullopt where no profile fits
     std::string no_profile_reason;         ///< without the file's name
     std::string no_profile_message;        ///< with it
-    ExitCode no_profile_code = ExitCode::capture;
+    ErrorKind no_profile_kind = ErrorKind::capture;
     std::string depth_kind;             ///< "planar, fits position to 0.02 %"; "" where no position shows it
     std::vector<std::string> warnings;  ///< of values that are wrong, in whole sentences
     std::optional<std::array<int, 2>> pixel;  ///< that was requested, in the file's coordinates

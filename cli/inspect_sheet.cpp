@@ -49,9 +49,9 @@ ExitCode write_frame_sheet(const std::string& path, int columns, const Sequence&
                            const CaptureReader& reader) {
     const auto count = sequence.frames.size();
     if (count > std::size_t(kMostSheetFrames))
-        throw Error(ExitCode::usage, "--contact-sheet: " + std::to_string(count) + " frames, the limit is " +
-                                         std::to_string(kMostSheetFrames) +
-                                         "; choose some, such as --frames 1-5000x10");
+        throw Error(ErrorKind::usage, "--contact-sheet: " + std::to_string(count) + " frames, the limit is " +
+                                          std::to_string(kMostSheetFrames) +
+                                          "; choose some, such as --frames 1-5000x10");
     const std::string title = std::filesystem::path(sequence.files.text()).filename().string();
     std::optional<FrameSheet> sheet;
     std::vector<MissingThumbnail> missing;  // before the first that can be read, which has the size
@@ -65,7 +65,7 @@ ExitCode write_frame_sheet(const std::string& path, int columns, const Sequence&
             }
             sheet->add(frame, display);
         } catch (const Error& error) {
-            if (error.exit_code() != ExitCode::capture) throw;
+            if (error.kind() != ErrorKind::capture) throw;
             is_whole = false;
             std::cerr << "aftershade: error: " << error.what() << "\n";
             const bool exists = std::filesystem::exists(sequence.path_of(sequence.file_number(frame)));
@@ -75,7 +75,7 @@ ExitCode write_frame_sheet(const std::string& path, int columns, const Sequence&
         }
     }
     if (!sheet)
-        throw Error(ExitCode::capture, title + ": no frame can be read, so there is no contact sheet");
+        throw Error(ErrorKind::capture, title + ": no frame can be read, so there is no contact sheet");
     write_png(path, sheet->picture());
     std::cerr << "contact sheet: " << path << "\n";
     return is_whole ? ExitCode::done : ExitCode::partial;

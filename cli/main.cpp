@@ -30,6 +30,7 @@
 #include "cli/verbs.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/memory_limit.h"
+#include "framework/base/option.h"
 #include "framework/base/status.h"
 #include "framework/base/text.h"
 #include "framework/effect/native/native_process.h"
@@ -42,6 +43,14 @@ namespace {
 int end(int code) {
     aftershade::StatusWriter().end(code);
     return code;
+}
+
+/// CLI11 has its options by these names (tests/cli/option_names_test.cpp).
+std::string command_spelling(aftershade::Option option, std::string_view value) {
+    std::string text = "--" + std::string(aftershade::option_name(option));
+    std::ranges::replace(text, '_', '-');
+    if (option == aftershade::Option::output) text = "-o";
+    return value.empty() ? text : text + " " + std::string(value);
 }
 
 int fail(ExitCode code, const char* message) {
@@ -156,10 +165,11 @@ std::string stdout_fault(int number) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    aftershade::spell_options_by(command_spelling);
     if (argc == 2 && std::string_view(argv[1]) == aftershade::cli::kNativeHostWord)
         return aftershade::serve_native_code(aftershade::kNativeDescriptor);
     hold_standard_streams();
-    aftershade::prepare_for_memory_limit();
+    aftershade::prepare_for_memory_limit(int(ExitCode::memory));
     // A file above the shell's limit is then an output that cannot be written, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app{"Run chains of GLSL effects over G-buffer captures, without a display.", "aftershade"};
@@ -210,7 +220,7 @@ int main(int argc, char** argv) {
         return stdout_is_whole() ? end(int(code)) : fail_for_stdout(errno);
     } catch (const aftershade::Error& error) {
         if (aftershade::is_out_of_memory(error)) end_for_memory(error);
-        return fail(error.exit_code(), error.what());
+        return fail(aftershade::cli::exit_code_of(error), error.what());
     } catch (const aftershade::host::Error& error) {
         if (error.kind() == aftershade::host::ErrorKind::memory) end_for_memory(std::bad_alloc());
         return fail(aftershade::cli::exit_code_of(error.kind()), error.what());

@@ -53,7 +53,7 @@ std::vector<TaskReport> report_files(const MergeArguments& options) {
 
 ExitCode merge(const MergeArguments& options) {
     const std::vector<TaskReport> files = report_files(options);
-    if (files.empty()) throw Error(ExitCode::capture, options.reports.front() + ": holds no report (.json)");
+    if (files.empty()) throw Error(ErrorKind::capture, options.reports.front() + ": holds no report (.json)");
     const MergedReport merged = merge_reports(files);
     write_text_file(options.output, merged_report_json(merged));
     for (const auto* faults : {&merged.missing, &merged.failed})

@@ -10,6 +10,7 @@
 
 #include "framework/base/error.h"
 #include "framework/base/status.h"
+#include "framework/batch/process_codes.h"
 #include "framework/batch/watchdog.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/native/native_process.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "framework/run/resumable_run.h"
 
 namespace CLI {
@@ -36,7 +37,7 @@ struct ResumeNeeds {
 };
 
 /// Renders what is not current, by `render`, under locks of the outputs; or says what it would do, with
-/// --dry-run. Throws Error(ExitCode::output) where another run holds an output.
+/// --dry-run. Throws Error(ErrorKind::output) where another run holds an output.
 ExitCode run_resumable(const ResumeArguments& arguments, const ResumeNeeds& needs,
                        const FingerprintSource& source, const CaptureReader& reader,
                        const std::function<ExitCode(const RunOptions&, const RunHooks&)>& render);

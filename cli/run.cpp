@@ -10,6 +10,7 @@
 
 #include "cli/bound_look.h"
 #include "cli/early_report.h"
+#include "cli/exit_code.h"
 #include "cli/frame_gaps.h"
 #include "cli/gl_options.h"
 #include "cli/graph_file.h"
@@ -256,10 +257,10 @@ Verb add_run(CLI::App& app) {
             write_early_report(*options, code, "");  // where there was no frame to run
             return code;
         } catch (const FaultyDocuments& faults) {
-            if (!faults.refuses_report) write_early_report(*options, faults.exit_code(), faults.details);
+            if (!faults.refuses_report) write_early_report(*options, exit_code_of(faults), faults.details);
             throw;
         } catch (const Error& error) {
-            write_early_report(*options, error.exit_code(), error.what());
+            write_early_report(*options, exit_code_of(error), error.what());
             throw;
         }
     };

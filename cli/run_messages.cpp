@@ -66,7 +66,7 @@ ProgressStyle parse_progress(const std::string& name) {
     if (name == "json") return ProgressStyle::json;
     if (name == "openjd") return ProgressStyle::openjd;
     if (name == "auto") return isatty(STDERR_FILENO) ? ProgressStyle::terminal : ProgressStyle::plain;
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::usage,
                 "--progress: '" + name + "' is not one of 'auto', 'none', 'plain', 'json' or 'openjd'");
 }
 
@@ -86,7 +86,7 @@ std::string warning_line(ProgressStyle style, const std::string& message) {
 void print_path(std::string_view path) {
     fmt::print("{}\n", path);
     if (std::fflush(stdout) != 0)
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     std::string("standard output cannot be written: ") + std::strerror(errno));
 }
 

@@ -20,7 +20,7 @@ enum class ProgressStyle {
     openjd     ///< plain, with what a farm of Open Job Description reads on stdout
 };
 
-/// "auto" is a terminal's line where stderr is one, else plain. Throws Error(ExitCode::usage).
+/// "auto" is a terminal's line where stderr is one, else plain. Throws Error(ErrorKind::usage).
 ProgressStyle parse_progress(const std::string& name);
 
 /// "openjd_progress: 25.0" and "openjd_status: ..." on stdout:
@@ -30,7 +30,7 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
 /// "aftershade: warning: ..." or {"event": "warning", "message": ...}
 std::string warning_line(ProgressStyle style, const std::string& message);
 
-/// A line of stdout, at once. Throws Error(ExitCode::output).
+/// A line of stdout, at once. Throws Error(ErrorKind::output).
 void print_path(std::string_view path);
 
 /// "12.5 frames/s, 48 s left": of `count` frames that many are done.

@@ -9,6 +9,7 @@
 
 #include "cli/batch_report.h"
 #include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/gl_options.h"
 #include "cli/graph_file.h"
 #include "cli/run_continuation.h"
@@ -58,8 +59,7 @@ public:
         try {
             code_ = work();
         } catch (const std::exception& error) {
-            const auto* own = dynamic_cast<const Error*>(&error);
-            code_ = own ? own->exit_code() : is_out_of_memory(error) ? ExitCode::memory : ExitCode::effect;
+            code_ = exit_code_of(error);
             error_ = error.what();
             write();
             throw;
@@ -151,7 +151,7 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
                 session.progress, session.arguments,
                 {report.frames_done + report.frames_current,
                  int(session.run.frames.size()) - session.run.warmup_frames, false, pipeline.has_history()});
-        return report.exit_code();
+        return exit_code_of(report);
     });
 }
 

@@ -14,6 +14,7 @@
 #include "cli/run_messages.h"
 #include "cli/watch.h"
 #include "framework/base/status.h"
+#include "framework/batch/process_codes.h"
 #include "framework/gpu/context.h"
 #include "framework/run/run_frames.h"
 

@@ -119,7 +119,7 @@ constexpr std::uint64_t kMiB = 1024 * 1024, kLeastWorkerBytes = (40 + 320) * kMi
 
 void require_room_for_a_worker(std::uint64_t limit) {
     if (limit < kLeastWorkerBytes)
-        throw Error(ExitCode::memory,
+        throw Error(ErrorKind::memory,
                     fmt::format("out of memory: --max-memory {} is too little for a worker; "
                                 "write --max-memory {}MB or more",
                                 limit, kLeastWorkerBytes / kMiB));

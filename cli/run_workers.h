@@ -7,6 +7,7 @@
 #include "cli/run_messages.h"
 #include "framework/base/error.h"
 #include "framework/batch/job_plan.h"
+#include "framework/batch/process_codes.h"
 #include "framework/look/pipeline.h"
 
 namespace aftershade::cli {

@@ -106,7 +106,7 @@ serve::DrawerEnd end_of(const WorkerResult& result, const Watchdog& watchdog) {
     }
     const bool is_memory =
         result.end == WorkerEnd::out_of_memory || result.exit_code == int(ExitCode::memory);
-    return {describe(result), result.status.step, false, is_memory ? ExitCode::memory : ExitCode::effect};
+    return {describe(result), result.status.step, false, is_memory ? ErrorKind::memory : ErrorKind::effect};
 }
 
 /// Runs this command once more as the process that draws, until `stop` at the latest.

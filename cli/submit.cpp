@@ -143,7 +143,7 @@ void write_job(const FarmJob& job, const FarmFiles& files) {
     std::error_code failure;
     fs::create_directories(job.folder, failure);
     if (failure)
-        throw Error(ExitCode::output, job.folder.string() + ": cannot be made: " + failure.message());
+        throw Error(ErrorKind::output, job.folder.string() + ": cannot be made: " + failure.message());
     for (const char* folder : {"reports", "history", "logs"}) make_folder_below(job.folder, folder);
     for (const FarmFile& file : files.files) write_text_file(path_below(job.folder, file.name), file.text);
 }

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 
 namespace CLI {
 class App;

@@ -51,7 +51,7 @@ double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& 
     const RunReport report = run_frames(
         {[&]() -> gpu::Context& { return context; }, pipeline, sequence, reader, run, outputs, data_path()},
         {}, stop);
-    if (!report.failures.empty()) throw Error(ExitCode::capture, report.failures.front().message);
+    if (!report.failures.empty()) throw Error(ErrorKind::capture, report.failures.front().message);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
@@ -70,7 +70,7 @@ ExitCode warm(const WarmOptions& options) {
     stop_at_errors(diagnostics);
     diagnostics.print(std::cerr);
     for (const std::string& fault : {store.fault(), gpu::prepare_driver_cache()})
-        if (!fault.empty()) throw Error(ExitCode::output, "nothing can be cached: " + fault);
+        if (!fault.empty()) throw Error(ErrorKind::output, "nothing can be cached: " + fault);
     if (const auto code = run_in_worker(options.plugins, pipeline.has_foreign())) return *code;
 
     const CaptureReader reader(*sequence, std::move(profiles), options.capture.limits);

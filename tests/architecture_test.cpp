@@ -208,6 +208,28 @@ TEST(Architecture, RolesAreToldApartByTheirKindsNotTheirNames) {
         }
 }
 
+TEST(Architecture, NoTextOfTheLibraryNamesAnOptionOfTheCommand) {
+    const std::regex declared(R"re("(?:-\w,)?--([a-z][a-z-]*))re"), literal(R"re("(?:[^"\\]|\\.)*")re"),
+        option("--([a-z][a-z-]*)");
+    using Matches = std::sregex_iterator;
+    std::set<std::string> own;
+    for (const Line& line : code_lines(kRoot / "cli", {".cpp"}))
+        for (Matches at(line.text.begin(), line.text.end(), declared); at != Matches(); ++at)
+            own.insert((*at)[1]);
+    ASSERT_GT(own.size(), 100u);
+    for (const Line& line : code_lines(kRoot / "framework", {".h", ".cpp"})) {
+        // Jobs of farms are command lines.
+        if (line.place.starts_with("framework/batch/") || line.text.find("--") == std::string::npos) continue;
+        for (Matches at(line.text.begin(), line.text.end(), literal); at != Matches(); ++at) {
+            const std::string text = at->str();
+            if (text.find("oiiotool") != std::string::npos) continue;
+            for (Matches word(text.begin(), text.end(), option); word != Matches(); ++word)
+                EXPECT_FALSE(own.contains((*word)[1]))
+                    << line.place << ": say spelled(Option) of base/option.h instead of " << text;
+        }
+    }
+}
+
 TEST(Architecture, TheGraphKnowsNoDocuments) {
     for (const Line& line : code_lines(kRoot / "framework/graph", {".h", ".cpp"}))
         EXPECT_EQ(line.text.find("framework/document/document.h"), std::string::npos) << line.place;

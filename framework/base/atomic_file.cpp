@@ -142,7 +142,7 @@ constexpr const char* kAbsent = "no such file";
 AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
     const Target target = target_of(final_path_);
     if (target.is_direct)
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     final_path_.string() +
                         ": is a pipe, a socket or a device, and this file is made beside its "
                         "place and renamed (name a regular file)");
@@ -166,9 +166,9 @@ AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path))
         lock_ = open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     }
     if (lock_ < 0 && errno == EEXIST)
-        throw Error(ExitCode::output, final_path_.string() +
-                                          ": every temporary name beside it is taken (remove " +
-                                          temporary_path_.filename().string() + " and the like)");
+        throw Error(ErrorKind::output, final_path_.string() +
+                                           ": every temporary name beside it is taken (remove " +
+                                           temporary_path_.filename().string() + " and the like)");
     if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
 }
 
@@ -195,7 +195,7 @@ AtomicFolder::AtomicFolder(fs::path final_path) : final_path_(std::move(final_pa
     temporary_path_ = temporary_name(final_path_, kTemporaryFolderEnd);
     constexpr mode_t kMode = 0777;  // less the user's umask
     if (mkdir(temporary_path_.c_str(), kMode) != 0)
-        throw Error(ExitCode::output, final_path_.string() + ": cannot be made: " + std::strerror(errno));
+        throw Error(ErrorKind::output, final_path_.string() + ": cannot be made: " + std::strerror(errno));
     lock_ = open(temporary_path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
 }
@@ -213,7 +213,7 @@ void AtomicFolder::commit() {
     // Where the file system cannot say so, a folder that holds something is not replaced either.
     if (failed && errno == EINVAL) failed = std::rename(temporary_path_.c_str(), final_path_.c_str());
     if (failed)
-        throw Error(ExitCode::output, final_path_.string() + ": cannot be made: " + std::strerror(errno));
+        throw Error(ErrorKind::output, final_path_.string() + ": cannot be made: " + std::strerror(errno));
     committed_ = true;
 }
 
@@ -222,7 +222,7 @@ void prepare_output_folder(const fs::path& file) {
     if (file.empty() || target.is_direct) return;
     const fs::path folder = target.path.has_parent_path() ? target.path.parent_path() : fs::path(".");
     const auto refuse = [&](const std::string& what) {
-        throw Error(ExitCode::output, file.string() + ": " + what);
+        throw Error(ErrorKind::output, file.string() + ": " + what);
     };
     std::error_code failure;
     if (fs::exists(folder, failure) && !fs::is_directory(folder, failure))
@@ -237,7 +237,7 @@ void prepare_output_folder(const fs::path& file) {
 
 void AtomicFile::commit(Flush flush) {
     const auto fail = [&](const char* step) {
-        throw Error(ExitCode::output, final_path_.string() + ": " + step + ": " + std::strerror(errno));
+        throw Error(ErrorKind::output, final_path_.string() + ": " + step + ": " + std::strerror(errno));
     };
     const int file = open(temporary_path_.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) fail("cannot open what was written");
@@ -274,7 +274,7 @@ int open_directly(const fs::path& path) {
 
 void write_directly(const fs::path& path, std::string_view text) {
     const auto fail = [&](const std::string& why) {
-        throw Error(ExitCode::output, path.string() + ": cannot be written: " + why);
+        throw Error(ErrorKind::output, path.string() + ": cannot be written: " + why);
     };
     const int file = open_directly(path);
     if (file < 0) fail(errno == ENXIO ? "it is a pipe without a reader" : std::strerror(errno));
@@ -298,7 +298,7 @@ void write_text_file(const fs::path& path, std::string_view text) {
     out << text;
     out.close();
     if (!out)
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     path.string() + ": cannot be written: " + std::strerror(errno ? errno : EIO));
     file.commit();
 }
@@ -336,7 +336,7 @@ std::string read_regular_file(const fs::path& path, std::uintmax_t max_bytes, st
     return "";
 }
 
-std::string read_text_file(const fs::path& path, ExitCode code, std::uintmax_t max_bytes) {
+std::string read_text_file(const fs::path& path, ErrorKind code, std::uintmax_t max_bytes) {
     std::string fault;
     std::string text = read_regular_file(path, max_bytes, fault);
     if (!fault.empty()) throw Error(code, path.string() + ": " + fault);
@@ -351,7 +351,7 @@ bool replace_text_file(const fs::path& path, std::string_view before, std::strin
     constexpr useconds_t kPause_us = 10'000;
     for (int i = 0; flock(lock.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++i) {
         if (i == kMostTries)
-            throw Error(ExitCode::output,
+            throw Error(ErrorKind::output,
                         path.string() + ": another program has held the lock of its folder '" +
                             folder.string() + "' for half a second; nothing was written (try again)");
         usleep(kPause_us);
@@ -360,7 +360,7 @@ bool replace_text_file(const fs::path& path, std::string_view before, std::strin
     const std::string found = read_regular_file(path, kMaxTextFileBytes, fault);
     if (fault.empty() && found != before) return false;
     if (!fault.empty() && fault != kAbsent)
-        throw Error(ExitCode::output, path.string() + ": " + fault + "; nothing was written");
+        throw Error(ErrorKind::output, path.string() + ": " + fault + "; nothing was written");
     write_text_file(path, text);
     return true;
 }

@@ -20,7 +20,7 @@ namespace aftershade {
 /// process makes in a folder removes what killed processes left there (remove_stale_temporaries).
 class AtomicFile {
 public:
-    /// Throws Error(ExitCode::output) where the path is a pipe, a socket or a device, which no rename may
+    /// Throws Error(ErrorKind::output) where the path is a pipe, a socket or a device, which no rename may
     /// replace. Where the file cannot be made it says nothing: whoever opens it has the reason.
     explicit AtomicFile(std::filesystem::path final_path);
     ~AtomicFile();
@@ -30,7 +30,7 @@ public:
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
     /// `no`: after a crash of the system the file may lack its contents.
     enum class Flush { no, yes };
-    /// Throws Error(ExitCode::output) naming the final path and the system's reason.
+    /// Throws Error(ErrorKind::output) naming the final path and the system's reason.
     void commit(Flush flush = Flush::yes);
 
 private:
@@ -46,14 +46,15 @@ private:
 /// destructor removes with all that it holds. Clears those that killed processes left there.
 class AtomicFolder {
 public:
-    /// Throws Error(ExitCode::output) where it cannot be made, naming the final path and the system's reason.
+    /// Throws Error(ErrorKind::output) where it cannot be made, naming the final path and the system's
+    /// reason.
     explicit AtomicFolder(std::filesystem::path final_path);
     ~AtomicFolder();
     AtomicFolder(const AtomicFolder&) = delete;
     AtomicFolder& operator=(const AtomicFolder&) = delete;
 
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
-    /// Throws Error(ExitCode::output), also where something has the final path by now.
+    /// Throws Error(ErrorKind::output), also where something has the final path by now.
     void commit();
 
 private:
@@ -69,12 +70,12 @@ private:
 std::vector<std::filesystem::path> remove_stale_temporaries(const std::filesystem::path& folder);
 
 /// Makes the folder of a file to be written, and removes what a killed run left in it: better before
-/// the work than after it. Throws Error(ExitCode::output) naming the file and the reason where the folder
+/// the work than after it. Throws Error(ErrorKind::output) naming the file and the reason where the folder
 /// cannot be made or nothing can be written into it. "" is not a file.
 void prepare_output_folder(const std::filesystem::path& file);
 
 /// Replaces the file by this text; a pipe, a socket, a device and what /dev/stdout leads to get it directly.
-/// Throws Error(ExitCode::output) naming the path, also for a pipe without a reader.
+/// Throws Error(ErrorKind::output) naming the path, also for a pipe without a reader.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 /// The bytes of a regular file of at most `max_bytes`. Where it is none, is larger or cannot be read: "", and
@@ -86,10 +87,10 @@ std::string read_regular_file(const std::filesystem::path& path, std::uintmax_t 
 /// More than any text that this project reads.
 inline constexpr std::uintmax_t kMaxTextFileBytes = 16u << 20;
 /// The same. Throws Error(code) naming the path and the fault.
-std::string read_text_file(const std::filesystem::path& path, ExitCode code,
+std::string read_text_file(const std::filesystem::path& path, ErrorKind code,
                            std::uintmax_t max_bytes = kMaxTextFileBytes);
 /// Replaces the file by `text` if it holds `before`, or is absent; else false. Of several processes that do
-/// this at once, none replaces what another one has just written. Throws Error(ExitCode::output) naming the
+/// this at once, none replaces what another one has just written. Throws Error(ErrorKind::output) naming the
 /// path.
 bool replace_text_file(const std::filesystem::path& path, std::string_view before, std::string_view text);
 /// Whether a regular file begins with these bytes; false where it cannot be read.

@@ -32,7 +32,7 @@ constexpr int kFirstOwnDescriptor = 8;
     const int reason = errno;
     const bool is_files = reason == EMFILE || reason == ENFILE;
     const bool is_limit = is_files || reason == EAGAIN || reason == ENOMEM;
-    throw Error(is_limit ? ExitCode::memory : ExitCode::effect,
+    throw Error(is_limit ? ErrorKind::memory : ErrorKind::effect,
                 what + ": " + std::strerror(reason) +
                     (is_files   ? " (raise the limit of open files: ulimit -n 256)"
                      : is_limit ? " (raise the limit of processes: ulimit -u; or run less at once)"
@@ -162,7 +162,7 @@ std::pair<Descriptor, Descriptor> make_socket_pair() {
 }
 
 pid_t spawn_child(const ChildCommand& command) {
-    if (command.arguments.empty()) throw Error(ExitCode::effect, "a process's command is empty");
+    if (command.arguments.empty()) throw Error(ErrorKind::effect, "a process's command is empty");
     std::vector<std::string> arguments = command.arguments;
     std::vector<std::string> environment = command.environment;
     std::vector<char*> argument_pointers = pointers(arguments);
@@ -180,7 +180,8 @@ pid_t spawn_child(const ChildCommand& command) {
     report.write.reset();
     if (const int reason = start_failure(report.read)) {
         reap(process);
-        throw Error(ExitCode::effect, arguments[0] + ": cannot be run as a worker: " + std::strerror(reason));
+        throw Error(ErrorKind::effect,
+                    arguments[0] + ": cannot be run as a worker: " + std::strerror(reason));
     }
     return process;
 }

@@ -31,9 +31,9 @@ struct Pipe {
 };
 
 /// What spawn_child may give a child: each number is above those that a child has. Throws
-/// Error(ExitCode::effect).
+/// Error(ErrorKind::effect).
 Pipe make_pipe();
-/// Two ends of a stream that both processes read and write. Throws Error(ExitCode::effect).
+/// Two ends of a stream that both processes read and write. Throws Error(ErrorKind::effect).
 std::pair<Descriptor, Descriptor> make_socket_pair();
 
 struct ChildLimits {
@@ -53,7 +53,7 @@ struct ChildCommand {
     bool leads_group = false;  ///< of processes, a new one
 };
 
-/// The child dies with the thread that called this. Throws Error(ExitCode::effect) where the program cannot
+/// The child dies with the thread that called this. Throws Error(ErrorKind::effect) where the program cannot
 /// be started, naming it and the system's reason.
 pid_t spawn_child(const ChildCommand& command);
 

@@ -39,7 +39,7 @@ std::string content_hash(std::string_view bytes) {
 
 FileContent file_content(const std::filesystem::path& path) {
     const auto fail = [&] {
-        return Error(ExitCode::capture, path.string() + ": cannot be read: " + std::strerror(errno));
+        return Error(ErrorKind::capture, path.string() + ": cannot be read: " + std::strerror(errno));
     };
     // A FIFO would be waited for, a device never end.
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -47,7 +47,7 @@ FileContent file_content(const std::filesystem::path& path) {
     struct stat found {};
     if (fstat(file, &found) != 0 || !S_ISREG(found.st_mode)) {
         close(file);
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     path.string() + ": is not a regular file (a pipe, socket or device cannot be read)");
     }
     const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),

@@ -17,7 +17,7 @@ struct FileContent {
     std::string hash;  ///< as content_hash gives it
 };
 
-/// Reads the whole file. Throws Error(ExitCode::capture) naming it and the system's reason. [thread-safe]
+/// Reads the whole file. Throws Error(ErrorKind::capture) naming it and the system's reason. [thread-safe]
 FileContent file_content(const std::filesystem::path& path);
 
 }  // namespace aftershade

@@ -42,7 +42,7 @@ fs::path data_path() {
         if (fs::is_directory(place / "effects")) return place;
         tried += (tried.empty() ? "" : ", ") + place.string();
     }
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::usage,
                 "no folder 'effects' in " + tried + " (set AFTERSHADE_DATA to the folder that holds it)");
 }
 

@@ -6,7 +6,7 @@
 namespace aftershade {
 
 /// $AFTERSHADE_DATA, else the source tree when the executable runs from its build tree, else
-/// <prefix>/share/aftershade beside the executable's bin folder. Throws Error(ExitCode::usage) naming the
+/// <prefix>/share/aftershade beside the executable's bin folder. Throws Error(ErrorKind::usage) naming the
 /// places tried when none of them holds `effects`.
 /// Inside a DataPathScope of this thread: its folder.
 std::filesystem::path data_path();

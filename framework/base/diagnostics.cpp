@@ -8,12 +8,19 @@
 
 namespace aftershade {
 
+Place option_place(Option option, std::string value) {
+    return {.file = std::move(value), .option = option};
+}
+
 std::string to_string(const Place& place) {
     // As long as a path may be on Linux (PATH_MAX). Longer places are values that the command line was given.
     constexpr std::size_t kLongest = 4096, kShown = 120;
-    if (place.file.size() > kLongest)
-        return place.file.substr(0, kShown) + "... (" + std::to_string(place.file.size()) + " bytes)";
-    if (place.line == 0) return place.file;
+    const std::string file = !place.option        ? place.file
+                             : place.file.empty() ? spelled(*place.option)
+                                                  : spelled(*place.option) + " " + place.file;
+    if (file.size() > kLongest)
+        return file.substr(0, kShown) + "... (" + std::to_string(file.size()) + " bytes)";
+    if (place.line == 0) return file;
     return place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
 }
 

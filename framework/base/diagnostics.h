@@ -2,23 +2,29 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "framework/base/option.h"
+
 namespace aftershade {
 
-/// Where a fault is. line 0: the whole file, or no file at all (then `file` says what, such as "--set
-/// bokeh.taps=2").
+/// Where a fault is. line 0: the whole file, or no file at all (then `file` says what).
 struct Place {
-    std::string file;
-    int line = 0;    ///< 1-based
-    int column = 0;  ///< 1-based, in bytes
+    std::string file;  ///< or the value of `option`
+    int line = 0;      ///< 1-based
+    int column = 0;    ///< 1-based, in bytes
+    std::optional<Option> option = std::nullopt;
 };
 
-/// "file:line:column", or "file" where there is no line.
+/// What was chosen, such as "bokeh.taps=2" by Option::set.
+Place option_place(Option option, std::string value = "");
+
+/// "file:line:column", "file" where there is no line, or "--set bokeh.taps=2" as the front end spells it.
 std::string to_string(const Place& place);
 
 enum class Severity { error, warning };

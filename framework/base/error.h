@@ -1,22 +1,23 @@
-// What ended the work, as an exception that carries the exit code of the command (docs/exit-codes.md).
+// What ended the work, as an exception.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "framework/base/diagnostics.h"
 
 namespace aftershade {
 
-/// Exit codes of every verb but `compare` and `golden`, which keep idiff's.
-enum class ExitCode : int {
-    done = 0,          ///< everything asked for was written
-    partial = 1,       ///< some frames done, some failed; or a verdict verb says no
-    usage = 2,         ///< the user's words or documents are wrong
-    capture = 3,       ///< no frame readable, or a role is missing
-    gl = 4,            ///< no usable GL
-    effect = 5,        ///< a shader, a plug-in or a pass failed
-    output = 6,        ///< an output could not be written
-    memory = 7,        ///< memory ran out
-    interrupted = 130  ///< SIGINT or SIGTERM
+enum class ErrorKind {
+    usage,       ///< the user's words or documents are wrong
+    capture,     ///< no frame readable, or a role is missing
+    gl,          ///< no usable GL
+    effect,      ///< a shader, a plug-in or a pass failed
+    output,      ///< an output could not be written
+    memory,      ///< memory ran out
+    interrupted  ///< a stop was requested
 };
 
 /// A failure of the machine or of data, not of our own code (which asserts) nor of the user's documents
@@ -24,11 +25,16 @@ enum class ExitCode : int {
 /// trailing full stop.
 class Error : public std::runtime_error {
 public:
-    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-    ExitCode exit_code() const { return code_; }
+    Error(ErrorKind kind, const std::string& message);
+    /// With the places of faults in documents and shaders; what() has a line for each.
+    Error(ErrorKind kind, const Diagnostics& faults);
+    ErrorKind kind() const { return kind_; }
+    /// At least one; without a place where only the message says it.
+    const std::vector<Diagnostic>& faults() const { return *faults_; }
 
 private:
-    ExitCode code_;
+    ErrorKind kind_;
+    std::shared_ptr<const std::vector<Diagnostic>> faults_;
 };
 
 }  // namespace aftershade

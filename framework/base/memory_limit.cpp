@@ -15,19 +15,29 @@
 #include <fstream>
 #include <new>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <thread>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 
 namespace aftershade {
 
 namespace {
 
 constexpr std::uint64_t kMiB = 1024 * 1024;
-constexpr std::string_view kRemedy =
-    "raise the limit (ulimit -v, ulimit -d), free memory, or run less at once (--scale 1/2, --region)";
+std::string remedy_text() {
+    return "raise the limit (ulimit -v, ulimit -d), free memory, or run less at once (" +
+           spelled(Option::scale, "1/2") + advice(", ", Option::region, "", "") + ")";
+}
+/// What a handler of signals needs, which must not allocate.
+struct LastWords {
+    int exit_code = 0;
+    std::string remedy;
+};
+const LastWords* g_last_words = nullptr;
 /// A crash with less than this left is put down to memory: a thread's stack takes 8 MiB, and what Mesa asks
 /// for at once seldom more than this.
 constexpr std::uint64_t kNearLimit = 64 * kMiB;
@@ -83,10 +93,11 @@ std::optional<Room> room_left() {
 
 /// Safe in a signal handler, so without fmt and without a buffer of stdio.
 [[noreturn]] void end_for_memory(std::string_view what) {
-    for (const std::string_view part : {std::string_view("aftershade: error: out of memory ("), what,
-                                        std::string_view("): "), kRemedy, std::string_view("\n")})
+    for (const std::string_view part :
+         {std::string_view("aftershade: error: out of memory ("), what, std::string_view("): "),
+          std::string_view(g_last_words->remedy), std::string_view("\n")})
         if (write(STDERR_FILENO, part.data(), part.size()) < 0) break;
-    _exit(int(ExitCode::memory));
+    _exit(g_last_words->exit_code);
 }
 
 void on_crash(int signal_number) {
@@ -138,7 +149,7 @@ void watch_crashes() {
 bool is_out_of_memory(const std::exception& error) {
     if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error))
         return true;
-    if (const auto* own = dynamic_cast<const Error*>(&error)) return own->exit_code() == ExitCode::memory;
+    if (const auto* own = dynamic_cast<const Error*>(&error)) return own->kind() == ErrorKind::memory;
     const auto* system = dynamic_cast<const std::system_error*>(&error);
     return system && (system->code() == std::errc::resource_unavailable_try_again ||
                       system->code() == std::errc::not_enough_memory);
@@ -150,7 +161,7 @@ std::string out_of_memory_text(const std::exception& error) {
     return "out of memory (" +
            (is_thread ? "no thread could be started: " + std::string(error.what())
                       : std::string("the system refused an allocation")) +
-           "): " + std::string(kRemedy) + (is_thread ? ", or the limit of processes (ulimit -u)" : "");
+           "): " + remedy_text() + (is_thread ? ", or the limit of processes (ulimit -u)" : "");
 }
 
 std::optional<std::uint64_t> address_space_left() {
@@ -174,17 +185,19 @@ std::uint64_t machine_memory_bytes() {
 void require_address_space(std::uint64_t bytes, const std::string& what) {
     const auto room = room_left();
     if (!room || room->left >= bytes) return;
-    throw Error(ExitCode::memory, "out of memory: " + what + " needs " + std::to_string(bytes / kMiB) +
-                                      " MiB of " + room->of + ", and the limit of " +
-                                      std::to_string(room->limit / kMiB) + " MiB leaves " +
-                                      std::to_string(room->left / kMiB) + " MiB: " + std::string(kRemedy));
+    throw Error(ErrorKind::memory, "out of memory: " + what + " needs " + std::to_string(bytes / kMiB) +
+                                       " MiB of " + room->of + ", and the limit of " +
+                                       std::to_string(room->limit / kMiB) + " MiB leaves " +
+                                       std::to_string(room->left / kMiB) + " MiB: " + remedy_text());
 }
 
 void share_one_heap() {
     mallopt(M_ARENA_MAX, 1);
 }
 
-void prepare_for_memory_limit() {
+void prepare_for_memory_limit(int exit_code) {
+    static const LastWords last_words{exit_code, remedy_text()};
+    g_last_words = &last_words;
     std::set_terminate(on_terminate);
     const auto room = room_left();
     if (!room) return;

@@ -9,7 +9,7 @@
 namespace aftershade {
 
 /// Whether this is what running out of memory looks like: bad_alloc, length_error, a thread that the system
-/// refused, or Error(ExitCode::memory).
+/// refused, or Error(ErrorKind::memory).
 bool is_out_of_memory(const std::exception& error);
 
 /// "out of memory (...): what to do".
@@ -24,16 +24,16 @@ std::uint64_t resident_bytes(int process);
 /// Memory that this machine, or the control group of this process, has.
 std::uint64_t machine_memory_bytes();
 
-/// Throws Error(ExitCode::memory) where a limit leaves less than `bytes`; `what` needs them, such as
+/// Throws Error(ErrorKind::memory) where a limit leaves less than `bytes`; `what` needs them, such as
 /// "OpenGL".
 void require_address_space(std::uint64_t bytes, const std::string& what);
 
 /// At the start of main. Where the address space or data is limited, malloc keeps to one arena: each other
 /// one reserves 64 MiB for a thread, which are never used here. llvmpipe gets as many threads as there is
 /// room for, unless LP_NUM_THREADS says how many. A crash in a library that does not check what malloc gave
-/// it, and an exception that ends a thread, then end the process with ExitCode::memory and a message, if
-/// memory is what was missing.
-void prepare_for_memory_limit();
+/// it, and an exception that ends a thread, then end the process with `exit_code` and a message, if memory is
+/// what was missing.
+void prepare_for_memory_limit(int exit_code);
 
 /// For a program that runs for hours: what one thread frees, the others use again. Otherwise glibc gives
 /// threads heaps of their own, and each keeps the most that it ever held. [before the first other thread]

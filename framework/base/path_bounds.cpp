@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 
 namespace aftershade {
@@ -68,7 +69,8 @@ std::string out_of_bounds(const fs::path& file, const fs::path& folder) {
     for (const fs::path& allowed : allowed_folders())
         if (lies_in(target, resolved_path(allowed))) return "";
     return "leads out of the folder '" + (folder.empty() ? std::string(".") : folder.string()) + "', to " +
-           target.string() + " (move it there, or allow its folder with --allow-path)";
+           target.string() + " (move it there" +
+           advice(", or allow its folder with ", Option::allow_path, "", "") + ")";
 }
 
 bool has_detour(const fs::path& file, std::vector<fs::path> folders) {

@@ -16,8 +16,8 @@ ScratchFolder::ScratchFolder() {
     std::string name =
         (fs::temp_directory_path() / "aftershade-XXXXXX").string();  // as mkdtemp(3) fills it in
     if (!mkdtemp(name.data()))
-        throw Error(ExitCode::output, "cannot make a work folder " + name + ": " + std::strerror(errno) +
-                                          " (TMPDIR names another place)");
+        throw Error(ErrorKind::output, "cannot make a work folder " + name + ": " + std::strerror(errno) +
+                                           " (TMPDIR names another place)");
     path_ = name;
 }
 

@@ -8,7 +8,7 @@ namespace aftershade {
 /// A new folder where the system keeps temporary files; it goes away with everything in it.
 class ScratchFolder {
 public:
-    /// Throws Error(ExitCode::output).
+    /// Throws Error(ErrorKind::output).
     ScratchFolder();
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;

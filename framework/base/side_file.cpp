@@ -115,14 +115,14 @@ fs::path path_below(const fs::path& folder, const fs::path& name) {
         fault = std::string("is ") + kNotFollowed;
     // What is absent is the writer's to make, or to report.
     if (!fault.empty() && fault != kNoSuchFile)
-        throw Error(ExitCode::output, (folder / name).string() + ": " + fault);
+        throw Error(ErrorKind::output, (folder / name).string() + ": " + fault);
     return folder / name;
 }
 
 fs::path make_folder_below(const fs::path& folder, const fs::path& name) {
     std::string fault;
     open_parent(folder, name / "file", Absent::is_made, fault);
-    if (!fault.empty()) throw Error(ExitCode::output, (folder / name).string() + ": " + fault);
+    if (!fault.empty()) throw Error(ErrorKind::output, (folder / name).string() + ": " + fault);
     return folder / name;
 }
 

@@ -31,7 +31,7 @@ std::string read_file_below(const std::filesystem::path& folder, const std::file
                             std::uintmax_t max_bytes, std::string& fault);
 
 /// `folder` / `name`, for writers that replace files by rename (atomic_file.h). Throws
-/// Error(ExitCode::output) naming the link, where one stands there or on the way, and the remedy.
+/// Error(ErrorKind::output) naming the link, where one stands there or on the way, and the remedy.
 std::filesystem::path path_below(const std::filesystem::path& folder, const std::filesystem::path& name);
 /// Makes the folders down to `folder` / `name` that are absent. Throws likewise, and where one cannot be
 /// made.

@@ -163,15 +163,15 @@ std::vector<ApprovedImage> approved_images(const fs::path& folder, const std::st
         const bool first = file == name + ".exr";
         if (!first && !(file.starts_with(name + "@") && file.ends_with(".exr"))) continue;
         if (printable(file) != file)
-            throw Error(ExitCode::capture, (folder / printable(file)).string() +
-                                               ": the golden's name has control characters, or is not UTF-8 "
-                                               "(rename or remove it)");
+            throw Error(ErrorKind::capture, (folder / printable(file)).string() +
+                                                ": the golden's name has control characters, or is not UTF-8 "
+                                                "(rename or remove it)");
         const std::size_t at = name.size() + 1;
         ApprovedImage& image = images.emplace_back();
         image.file = entry.path();
         for (const fs::path& beside : {image.file, sidecar_path(image.file)})
             if (const std::string why = out_of_bounds(beside, folder); !why.empty())
-                throw Error(ExitCode::capture, beside.string() + ": " + why);
+                throw Error(ErrorKind::capture, beside.string() + ": " + why);
         image.key = first ? "" : file.substr(at, file.size() - at - 4);
         image.sidecar = read_sidecar(entry.path(), image.sidecar_fault);
     }

@@ -92,7 +92,7 @@ std::string kubernetes_submit_script(const FarmJob& job) {
 void add_kubernetes_files(const FarmJob& job, FarmFiles& out) {
     constexpr int kMostIndexes = 100000;  // with backoffLimitPerIndex; the API refuses more
     if (job.tasks() > kMostIndexes)
-        throw Error(ExitCode::usage,
+        throw Error(ErrorKind::usage,
                     fmt::format("--tasks: an Indexed Job of Kubernetes has at most {} tasks, not {}",
                                 kMostIndexes, job.tasks()));
     out.files.push_back({"job.json", kubernetes_job(job.name, kubernetes_tasks(job)).dump(2) + "\n"});

@@ -70,13 +70,13 @@ Json openjd_steps(const FarmJob& job) {
 void add_openjd_files(const FarmJob& job, FarmFiles& out) {
     // The format has no way to write a brace pair that is text.
     if (job.folder.string().find("{{") != std::string::npos)
-        throw Error(ExitCode::usage, "--folder " + job.folder.string() +
-                                         ": Open Job Description reads {{ as the beginning of a variable; "
-                                         "choose a folder without it");
+        throw Error(ErrorKind::usage, "--folder " + job.folder.string() +
+                                          ": Open Job Description reads {{ as the beginning of a variable; "
+                                          "choose a folder without it");
     const Json steps = openjd_steps(job);
     if (steps.size() > kMostSteps)
         throw Error(
-            ExitCode::usage,
+            ErrorKind::usage,
             fmt::format("--history exact: a template of Open Job Description holds {} steps, and {} tasks "
                         "in a row need {}; write --tasks {}",
                         kMostSteps, job.tasks(), steps.size(), kMostSteps - 1));

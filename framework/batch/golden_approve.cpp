@@ -48,7 +48,7 @@ public:
         AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));
         std::error_code failure;
         fs::copy_file(image, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
-        if (failure) throw Error(ExitCode::output, target.string() + ": " + failure.message());
+        if (failure) throw Error(ErrorKind::output, target.string() + ": " + failure.message());
     }
     void add_text(const fs::path& target, const std::string& text) {
         AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));
@@ -74,7 +74,7 @@ public:
         const std::scoped_lock lock(mutex_);
         std::error_code failure;
         fs::create_directories(result.test->goldens, failure);
-        if (failure) throw Error(ExitCode::output, result.test->goldens.string() + ": " + failure.message());
+        if (failure) throw Error(ErrorKind::output, result.test->goldens.string() + ": " + failure.message());
         for (const RenderedImage& image : images) take(*result.test, image, result.sources);
     }
     void commit() { staging_.commit(); }
@@ -99,8 +99,8 @@ private:
         }
         const fs::path target = target_of(test, image, approved);
         if (const auto input = inputs_.replaced_by(target))
-            throw Error(ExitCode::usage, target.string() + ": would replace the input " + input->string() +
-                                             " (choose another folder for 'goldens')");
+            throw Error(ErrorKind::usage, target.string() + ": would replace the input " + input->string() +
+                                              " (choose another folder for 'goldens')");
         staging_.add_image(target, image.file);
         approve(target, image.file, sidecar);
         approval_.written.push_back(target);

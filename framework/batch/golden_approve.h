@@ -36,7 +36,7 @@ std::string foreign_goldens(const GoldenSuite& suite, const GoldenRunOptions& op
 /// Renders the cases that fit the filters. An image with new bits is put beside its golden under another name
 /// and, when every case has ended, renamed into place, then its sidecar: a process that is killed leaves old
 /// files or new ones, each whole. In place of: this renderer's own approved image; else the first of its
-/// name, or with `add` one with the renderer's key. Throws Error(ExitCode::output).
+/// name, or with `add` one with the renderer's key. Throws Error(ErrorKind::output).
 GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOptions& options,
                                const GoldenListener& listener, const std::atomic<bool>& interrupt);
 

@@ -51,7 +51,7 @@ struct GoldenCase {
 
     /// "lamps.color", of a tap "lamps.bloom.bright": what FramePattern adds ".0001.exr" to.
     std::vector<std::string> image_stems() const;
-    /// The whole tolerance of a frame. Reads masks and objects: throws Error(ExitCode::capture).
+    /// The whole tolerance of a frame. Reads masks and objects: throws Error(ErrorKind::capture).
     CompareRules rules_of(int frame) const;
 };
 

@@ -9,6 +9,7 @@
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/batch/process_codes.h"
 #include "framework/batch/worker.h"
 #include "framework/capture/frame_range.h"
 #include "framework/capture/sequence.h"
@@ -131,7 +132,8 @@ void extract(const fs::path& from, const std::string& role, const fs::path& to) 
         channels.push_back({channel.name, channel.type, &images.back(), 0});
     }
     if (channels.empty())
-        throw Error(ExitCode::capture, from.string() + ": no channel of the role '" + role + "' was written");
+        throw Error(ErrorKind::capture,
+                    from.string() + ": no channel of the role '" + role + "' was written");
     ExrWriteOptions options;
     options.data_window = part.data_window;
     options.display_window = part.display_window;
@@ -188,7 +190,7 @@ RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& opti
     try {
         take_images(test, frames, work, rendered);
     } catch (const Error& error) {
-        if (error.exit_code() == ExitCode::output) throw;
+        if (error.kind() == ErrorKind::output) throw;
         rendered.verdict = Verdict::failure;
         rendered.messages.emplace_back(error.what());
         rendered.images.clear();

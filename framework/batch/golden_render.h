@@ -39,8 +39,8 @@ struct RenderedCase {
 };
 
 /// Renders into `work`, an empty folder of the case's own. Images hold only channels, windows and
-/// chromaticities: the same picture gives the same bytes wherever it is made. Throws Error(ExitCode::output).
-/// [thread-safe for different folders]
+/// chromaticities: the same picture gives the same bytes wherever it is made. Throws
+/// Error(ErrorKind::output). [thread-safe for different folders]
 RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& options,
                          const std::filesystem::path& work, const std::atomic<bool>& interrupt);
 

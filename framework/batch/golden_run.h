@@ -95,7 +95,7 @@ struct GoldenSuiteResult {
 /// Called for each case that has ended, one at a time.
 using GoldenListener = std::function<void(const GoldenCaseResult&, int done, int all)>;
 
-/// Throws Error(ExitCode::output) where the work folder or the report cannot be written.
+/// Throws Error(ErrorKind::output) where the work folder or the report cannot be written.
 GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOptions& options,
                                    const GoldenListener& listener, const std::atomic<bool>& interrupt);
 

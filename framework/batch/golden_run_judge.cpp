@@ -127,7 +127,7 @@ void copy_into(const fs::path& from, const fs::path& to) {
     AtomicFile file(to);
     std::error_code failure;
     fs::copy_file(from, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
-    if (failure) throw Error(ExitCode::output, to.string() + ": " + failure.message());
+    if (failure) throw Error(ErrorKind::output, to.string() + ": " + failure.message());
     file.commit();
 }
 
@@ -203,7 +203,7 @@ RulesOrFault rules_or_fault(const GoldenCase& test, int frame) {
     try {
         return {test.rules_of(frame), ""};
     } catch (const Error& error) {
-        if (error.exit_code() != ExitCode::capture) throw;
+        if (error.kind() != ErrorKind::capture) throw;
         return {test.rules, error.what()};
     }
 }

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void refuse() {
-    throw Error(ExitCode::usage, "the look has faults");
+    throw Error(ErrorKind::usage, "the look has faults");
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ std::string LookHasher::text_of(const GoldenCase& test) {
     std::string text = test.steps + plugins_;
     // Of a suite or a case only the steps count; its tolerance changes no picture.
     for (std::size_t i = test.look.empty() ? 1 : 0; i < look->files.size(); ++i)
-        text += read_text_file(look->files[i], ExitCode::usage);
+        text += read_text_file(look->files[i], ErrorKind::usage);
     for (const std::string& set : test.sets) text += "\n" + set;
     std::set<std::string> ids;
     for (const LookStep& step : look->steps) ids.insert(step.effect);

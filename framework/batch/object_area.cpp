@@ -1,7 +1,6 @@
 #include "framework/batch/object_area.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "framework/base/data_path.h"
 #include "framework/base/diagnostics.h"
@@ -13,34 +12,24 @@
 
 namespace aftershade {
 
-namespace {
-
-[[noreturn]] void refuse(const Diagnostics& diagnostics) {
-    std::ostringstream text;
-    diagnostics.print(text);
-    throw Error(ExitCode::capture, text.str());
-}
-
-}  // namespace
-
 AreaShape object_area(const std::string& capture, std::optional<int> frame,
                       const std::vector<TableKey>& objects, const ReadLimits& limits) {
     Diagnostics diagnostics;
     std::optional<Sequence> sequence = open_sequence(capture, diagnostics);
     std::vector<Profile> profiles = read_profiles(data_path() / "profiles", diagnostics);
-    if (!sequence || diagnostics.has_errors()) refuse(diagnostics);
+    if (!sequence || diagnostics.has_errors()) throw Error(ErrorKind::capture, diagnostics);
     if (!frame && sequence->frames.size() != 1)
-        throw Error(ExitCode::capture, capture + ": has " + std::to_string(sequence->frames.size()) +
-                                           " frames; name the file of one of them");
+        throw Error(ErrorKind::capture, capture + ": has " + std::to_string(sequence->frames.size()) +
+                                            " frames; name the file of one of them");
     const bool named = std::ranges::any_of(objects, [](const TableKey& key) { return !key.name.empty(); });
     const CaptureReader reader(*sequence, std::move(profiles), limits);
     const std::string role = coverage_role(objects);
     const Capture read = reader.read(sequence->file_number(frame.value_or(sequence->frames.front())),
                                      std::vector<std::string>{role});
     if (!named && !std::ranges::count(read.header.roles, kObjectIdRole))
-        throw Error(ExitCode::capture, read.header.path.string() +
-                                           ": has no object ids: neither a Cryptomatte nor the " +
-                                           "role object_id");
+        throw Error(ErrorKind::capture, read.header.path.string() +
+                                            ": has no object ids: neither a Cryptomatte nor the " +
+                                            "role object_id");
     AreaShape shape =
         covered_area(read.images.at(role), 0, read.header.data_window, read.header.display_window);
     if (!read.header.differences.empty())

@@ -13,7 +13,7 @@ namespace aftershade {
 
 /// Where the objects cover any of a pixel, however little, in a frame of a capture (what `run` takes), by its
 /// Cryptomatte or its role object_id. nullopt for the frame: the capture's only one. Throws
-/// Error(ExitCode::capture) where the capture cannot be read or has neither, for a name that it lacks, and
+/// Error(ErrorKind::capture) where the capture cannot be read or has neither, for a name that it lacks, and
 /// without a frame where it has several.
 AreaShape object_area(const std::string& capture, std::optional<int> frame,
                       const std::vector<TableKey>& objects, const ReadLimits& limits = {});

@@ -150,7 +150,7 @@ private:
         const auto file = name.get<std::string>();
         std::string fault;
         if (auto opened = open_file_below(report_, file, fault)) return std::move(*opened);
-        throw Error(ExitCode::capture, file + ": " + fault);
+        throw Error(ErrorKind::capture, file + ": " + fault);
     }
     std::vector<StoredLayer> layers_in(const Json& name) const {
         return name.is_string() ? read_layers(open(name)) : std::vector<StoredLayer>{};
@@ -165,7 +165,7 @@ private:
         std::string fault;
         const std::string bytes = read_file_below(report_, file, kMaxPictureBytes, fault);
         if (fault.empty() && !bytes.starts_with(kPngMagic)) fault = "is not a PNG";
-        if (!fault.empty()) throw Error(ExitCode::capture, file + ": " + fault);
+        if (!fault.empty()) throw Error(ErrorKind::capture, file + ": " + fault);
         return store_.add(base64(std::as_bytes(std::span(bytes))));
     }
 
@@ -261,12 +261,12 @@ void write_report_page(const fs::path& report, const fs::path& page, const Repor
         constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
         std::string fault;
         const std::string text = read_file_below(report, "report.json", kMostBytes, fault);
-        if (!fault.empty()) throw Error(ExitCode::capture, file.string() + ": " + fault);
+        if (!fault.empty()) throw Error(ErrorKind::capture, file.string() + ": " + fault);
         data = Json::parse(text);
         check_keys(data);
         add_images(data, report, store);
     } catch (const Json::exception& error) {
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     fmt::format("{}: is not a report of a golden suite: {}", file.string(), error.what()));
     }
     data["palette"] = palette();

@@ -15,7 +15,7 @@ struct ReportPageOptions {
 /// Writes `page` from the report.json and images/ that `golden run --report` left in `report`: a page that
 /// needs no server, no network and, within the limit, no other file. Images whose bits are those approved are
 /// one small picture; of all others every layer's values are in it. The page names a picture that is gone.
-/// Throws Error(ExitCode::capture) where report.json cannot be read, Error(ExitCode::output) where the page
+/// Throws Error(ErrorKind::capture) where report.json cannot be read, Error(ErrorKind::output) where the page
 /// cannot be written.
 void write_report_page(const std::filesystem::path& report, const std::filesystem::path& page,
                        const ReportPageOptions& options = {});

@@ -29,7 +29,7 @@ ReportPictures::ReportPictures(fs::path folder) : folder_(std::move(folder)) {
     std::string fault;
     std::istringstream lines(read_file_below(folder_, kList, kMostBytes, fault));
     if (!fault.empty() && fault != kNoSuchFile)
-        throw Error(ExitCode::output, (folder_ / kList).string() + ": " + fault);
+        throw Error(ErrorKind::output, (folder_ / kList).string() + ": " + fault);
     for (std::string name; std::getline(lines, name);)
         if (is_plain_name(name)) old_.insert(name);
 }
@@ -42,7 +42,7 @@ fs::path ReportPictures::add(const std::string& name) {
         const auto list = open_file_below(folder_, kList, fault, FileUse::append);
         if (list && write(list->descriptor(), line.data(), line.size()) != ssize_t(line.size()))
             fault = "cannot be written";
-        if (!fault.empty()) throw Error(ExitCode::output, (folder_ / kList).string() + ": " + fault);
+        if (!fault.empty()) throw Error(ErrorKind::output, (folder_ / kList).string() + ": " + fault);
     }
     return path_below(folder_, name);
 }
@@ -57,7 +57,7 @@ void ReportPictures::remove_old() {
         if (own_.contains(name) || !fs::is_regular_file(fs::symlink_status(file, failure))) continue;
         fs::remove(file, failure);
         if (failure)
-            throw Error(ExitCode::output, file.string() + ": cannot be removed: " + failure.message());
+            throw Error(ErrorKind::output, file.string() + ": cannot be removed: " + failure.message());
     }
     write_text_file(path_below(folder_, kList), names);
     old_.clear();

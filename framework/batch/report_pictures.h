@@ -13,17 +13,17 @@ namespace aftershade {
 /// which a run that was killed has not written.
 class ReportPictures {
 public:
-    /// Makes the folder. Throws Error(ExitCode::output) where it cannot be made, or its list cannot be read.
+    /// Makes the folder. Throws Error(ErrorKind::output) where it cannot be made, or its list cannot be read.
     explicit ReportPictures(std::filesystem::path folder);
 
     const std::filesystem::path& folder() const { return folder_; }
 
     /// Where to write the picture of that file name. It is listed before it is there, whatever ends the
-    /// process. Throws Error(ExitCode::output). [thread-safe]
+    /// process. Throws Error(ErrorKind::output). [thread-safe]
     std::filesystem::path add(const std::string& name);
 
     /// Removes the pictures of earlier runs that this one has not written again; files in no list stay.
-    /// Throws Error(ExitCode::output).
+    /// Throws Error(ErrorKind::output).
     void remove_old();
 
 private:

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/base/error.h"
 #include "framework/batch/job_plan.h"
+#include "framework/batch/process_codes.h"
 #include "framework/batch/watchdog.h"
 #include "framework/batch/worker.h"
 

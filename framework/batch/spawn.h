@@ -13,7 +13,7 @@ struct SpawnedWorker {
     Descriptor out, error, status;  ///< reading ends, not blocking; of its own streams there are none
 };
 
-/// Throws Error(ExitCode::effect) where the program cannot be started.
+/// Throws Error(ErrorKind::effect) where the program cannot be started.
 SpawnedWorker spawn_worker(const WorkerCommand& command);
 
 }  // namespace aftershade

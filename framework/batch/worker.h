@@ -51,7 +51,7 @@ struct WorkerResult {
 
 /// Runs the command to its end. The child leads a process group of its own; what is left of the group when
 /// the child has ended is killed. It dies with the thread that called this.
-/// Throws Error(ExitCode::effect) where the program cannot be started, naming it and the system's reason.
+/// Throws Error(ErrorKind::effect) where the program cannot be started, naming it and the system's reason.
 /// [thread-safe: several workers may run from several threads]
 WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& listener = {},
                         const std::atomic<bool>* interrupt = nullptr);

@@ -256,14 +256,14 @@ std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const 
     const auto text = metadata.text(name);
     const auto names = metadata.names();
     if (!text && std::find(names.begin(), names.end(), name) != names.end())
-        throw Error(ExitCode::capture, path.string() + ": attribute " + name + " is not a text");
+        throw Error(ErrorKind::capture, path.string() + ": attribute " + name + " is not a text");
     if (!text) return {};
     Diagnostics diagnostics;
     std::vector<CaptureLight> lights;
     if (const auto node = parse_document(*text, name, diagnostics)) lights = parse_lights(*node, diagnostics);
     if (!diagnostics.has_errors()) return lights;
     const Diagnostic& fault = diagnostics.all().front();
-    throw Error(ExitCode::capture,
+    throw Error(ErrorKind::capture,
                 path.string() + ": attribute " + to_string(fault.place) + ": " + fault.message);
 }
 

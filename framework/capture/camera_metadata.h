@@ -32,7 +32,7 @@ std::vector<std::string> camera_faults(const ExrPart& part, const Profile& profi
 void add_attributes(const Camera& camera, const std::vector<CaptureLight>& lights,
                     std::map<std::string, ExrValue>& attributes);
 
-/// The attribute aftershade/lights; none where there is no such text. Throws Error(ExitCode::capture) that
+/// The attribute aftershade/lights; none where there is no such text. Throws Error(ErrorKind::capture) that
 /// begins with `path` where the text is not a list of lights.
 std::vector<CaptureLight> lights_of_metadata(const ExrMetadata& metadata, const std::filesystem::path& path);
 

@@ -1,3 +1,4 @@
+#include "framework/base/option.h"
 #include "framework/capture/capture_internal.h"
 
 #include <algorithm>
@@ -47,10 +48,9 @@ void read_alpha(Image& color, bool is_opaque, CaptureHeader& header) {
         has_light = has_light || values[i] != 0 || values[i + 1] != 0 || values[i + 2] != 0;
     }
     if (has_light && !has_alpha)
-        header.notes.push_back(
-            "the alpha of color is 0 everywhere, so a PNG of it is transparent; --alpha opaque, or "
-            "\"alpha\": "
-            "\"opaque\" in capture.json, reads it as 1");
+        header.notes.push_back("the alpha of color is 0 everywhere, so a PNG of it is transparent; " +
+                               spelled(Option::alpha, "opaque") +
+                               ", or \"alpha\": \"opaque\" in capture.json, reads it as 1");
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ const Profile& CaptureReader::choose_profile(const ExrPart& part, CaptureHeader&
         if (profile.id == id) return profile;
     std::vector<std::string> ids;
     for (const Profile& profile : profiles_) ids.push_back(profile.id);
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::usage,
                 "no profile '" + sequence_.profile + "'; known: " + list_of_names(ids, "and"));
 }
 
@@ -101,9 +101,9 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
     if (found) source.channels = std::move(*found);
     else if (has_luminance) source.luminance = luminance.layers[0][0];
     else if (own_file != open.role_files.end() && &file != &cryptomatte_file(open))
-        throw Error(ExitCode::capture, file.path().string() + ": " +
-                                           no_channels_for_role(*find_role(role), file.merged(),
-                                                                sequence_.channels.contains(role)));
+        throw Error(ErrorKind::capture, file.path().string() + ": " +
+                                            no_channels_for_role(*find_role(role), file.merged(),
+                                                                 sequence_.channels.contains(role)));
     else return;
     open.header.role_channels[role] =
         source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};

@@ -96,8 +96,9 @@ struct StoredChannel {
 /// Opens frames of a sequence, by the number in the file's name: Sequence::file_number(). Every frame is read
 /// as the first that can be read of Sequence::whole and Sequence::frames: by its profile, in its view, from
 /// its layer and its channels where the frame has them, and into its colour space. CaptureHeader::differences
-/// has what is otherwise. A frame without that view or layer is Error(ExitCode::capture). Each of a capture's
-/// layers has a first frame of its own. [read() and read_header() may be called from several threads]
+/// has what is otherwise. A frame without that view or layer is Error(ErrorKind::capture). Each of a
+/// capture's layers has a first frame of its own. [read() and read_header() may be called from several
+/// threads]
 class CaptureReader {
 public:
     /// `sequence` must outlive the reader.
@@ -115,14 +116,14 @@ public:
     std::string decision(std::span<const std::string> roles) const;
     /// Whether the frame's main file is there.
     bool has_frame(int frame) const;
-    /// Throws Error(ExitCode::capture): no such file, not readable, no profile.
+    /// Throws Error(ErrorKind::capture): no such file, not readable, no profile.
     CaptureHeader read_header(int frame) const;
     /// Reads the header and the requested roles. A role that the files lack is left out of `images`. A role
     /// of a layer, layer_role(), is read where the capture has that layer; the last layer that is read
     /// holds what lies behind it, too. Other roles are of the whole picture: layers put over one another. The
     /// role coverage_role() is the share of each pixel that the objects cover, by the file's Cryptomatte;
-    /// without one it is 0 or 1, by object_id. Throws Error(ExitCode::capture) where objects are requested by
-    /// names that the file cannot have.
+    /// without one it is 0 or 1, by object_id. Throws Error(ErrorKind::capture) where objects are requested
+    /// by names that the file cannot have.
     Capture read(int frame, std::span<const std::string> roles) const;
 
     /// Other profiles that find the role in the frame's channels, and other layers that have it.
@@ -133,7 +134,7 @@ public:
     std::vector<CryptomatteLayer> cryptomattes(int frame) const;
     std::vector<ObjectCoverage> cryptomatte_coverage(int frame, const std::string& name) const;
     /// The full name of the one that is called `name` or "<layer>.<name>"; with "" of the one that objects
-    /// are looked for in. Throws Error(ExitCode::capture) where there is none, or where several would do.
+    /// are looked for in. Throws Error(ErrorKind::capture) where there is none, or where several would do.
     std::string cryptomatte_name(int frame, const std::string& name) const;
 
     /// How the roles of a frame are decoded: its profile's ways, or capture.json's.
@@ -142,7 +143,7 @@ public:
     /// Every channel of the frame's main file, in this view, bit for bit and under its own name; but the
     /// channels of the roles in `changed` hold those images, brought back to the producer's conventions. Of a
     /// role that the file stores as a sum of layers the first layer holds all. Channels of another data
-    /// window are placed in the working grid. Deep channels are flattened. Throws Error(ExitCode::usage)
+    /// window are placed in the working grid. Deep channels are flattened. Throws Error(ErrorKind::usage)
     /// where the capture has layers: no file is the whole picture's.
     std::vector<StoredChannel> read_stored_channels(int frame,
                                                     const std::map<std::string, const Image*>& changed) const;

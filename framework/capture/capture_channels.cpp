@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/channel_names.h"
 #include "framework/capture/encode_role.h"
@@ -60,9 +61,11 @@ std::map<std::string, RoleDecoding> CaptureReader::decodings(int frame) const {
 std::vector<StoredChannel> CaptureReader::read_stored_channels(
     int frame, const std::map<std::string, const Image*>& changed) const {
     if (!sequence_.layers.empty())
-        throw Error(ExitCode::usage, "--keep-channels writes the channels of one file, and the capture has " +
-                                         std::to_string(sequence_.layers.size()) +
-                                         " layers (choose roles with --output-roles)");
+        throw Error(ErrorKind::usage, spelled(Option::keep_channels) +
+                                          " writes the channels of one file, and the capture has " +
+                                          std::to_string(sequence_.layers.size()) +
+                                          " layers (choose roles with " + spelled(Option::output_roles) +
+                                          ")");
     const OpenFrame open = this->open(frame);
     std::map<std::string, Image> encoded;
     for (const auto& [role, image] : changed)

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/common_names.h"
 #include "framework/capture/layer_roles.h"
@@ -147,10 +148,10 @@ std::unique_ptr<FrameFile> CaptureReader::open_file(const std::filesystem::path&
         return file;
     }
     if (std::ranges::find(views, held) == views.end())
-        throw Error(ExitCode::capture,
-                    path.string() + ": has no view '" + held + "', which the first frame, " + origin +
-                        ", is read in; it has " + there +
-                        " (choose a view that every frame has with --view, or 'view' in capture.json)");
+        throw Error(ErrorKind::capture, path.string() + ": has no view '" + held +
+                                            "', which the first frame, " + origin + ", is read in; it has " +
+                                            there + " (choose a view that every frame has with " +
+                                            spelled(Option::view) + ", or 'view' in capture.json)");
     header.differences.push_back(of + "it has the views " + there + "; '" + held + "' is read, as in " +
                                  origin);
     return std::make_unique<FrameFile>(path, limits_, held, deep_layers);

@@ -23,7 +23,7 @@ void CaptureReader::require_albedo(OpenFrame& open) const {
         " over the albedo, and the profile '" + open.header.profile +
         "' finds no albedo (render it too, or name its channels or its file as for any role)";
     if (sequence_.channels.contains(kIrradianceRole) || open.role_files.contains(kIrradianceRole))
-        throw Error(ExitCode::capture, open.header.path.string() + ": " + why);
+        throw Error(ErrorKind::capture, open.header.path.string() + ": " + why);
     open.header.half_there[kIrradianceRole] = why;
     open.header.role_channels.erase(kIrradianceRole);
     open.roles.erase(found);

@@ -31,7 +31,7 @@ Window united(const Window& a, const Window& b) {
 
 void require_color(const CaptureHeader& header, std::size_t index) {
     if (std::ranges::find(header.roles, kColorRole) != header.roles.end()) return;
-    throw Error(ExitCode::capture,
+    throw Error(ErrorKind::capture,
                 header.path.string() + ": " + layer_text(index) +
                     " has no color, whose alpha says what the layer covers (name its channels "
                     "under \"channels\" of the layer)");
@@ -39,7 +39,7 @@ void require_color(const CaptureHeader& header, std::size_t index) {
 
 void require_same_picture(const CaptureHeader& header, const CaptureHeader& front, std::size_t index) {
     if (header.display_window == front.display_window) return;
-    throw Error(ExitCode::capture,
+    throw Error(ErrorKind::capture,
                 header.path.string() + ": " + layer_text(index) + " has a display window of " +
                     size_text(header.display_window) + ", but the first layer, " + front.path.string() +
                     ", has one of " + size_text(front.display_window) +

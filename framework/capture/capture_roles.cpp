@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/capture/bare_channels.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/channel_names.h"
@@ -73,11 +74,12 @@ bool is_among(const std::vector<std::string>& names, const std::string& name) {
 
 void require_layer_of_first(const CaptureHeader& header, const CaptureHeader& first) {
     if (is_among(header.layers, first.layer)) return;
-    throw Error(ExitCode::capture,
+    throw Error(ErrorKind::capture,
                 header.path.string() + ": has no layer '" + first.layer + "', which the first frame, " +
                     first.path.string() + ", is read from; it has " +
                     (header.layers.empty() ? "none" : list_of_names(header.layers, "and")) +
-                    " (choose a layer that every frame has with --layer, or 'layer' in capture.json)");
+                    " (choose a layer that every frame has with " + spelled(Option::layer) +
+                    ", or 'layer' in capture.json)");
 }
 
 }  // namespace
@@ -98,8 +100,8 @@ void CaptureReader::choose_layer(OpenFrame& open) const {
                                          header.layer + "' is read, as in " + first->header->path.string());
         else if (header.layers.size() > 1)
             header.notes.push_back("the file has the layers " + list_of_names(header.layers, "and") + "; '" +
-                                   header.layer +
-                                   "' is read (choose with --layer, or 'layer' in capture.json)");
+                                   header.layer + "' is read (choose with " + spelled(Option::layer) +
+                                   ", or 'layer' in capture.json)");
         return;
     }
     if (is_among(header.layers, sequence_.layer)) return;
@@ -109,10 +111,10 @@ void CaptureReader::choose_layer(OpenFrame& open) const {
     }
     std::vector<std::string> known = header.layers.empty() ? color_layers(part) : header.layers;
     std::erase(known, "");
-    throw Error(ExitCode::usage, header.path.string() + ": has no layer '" + sequence_.layer + "'" +
-                                     (known.empty() ? std::string("; it has no layers")
-                                                    : did_you_mean(sequence_.layer, known) + " (it has " +
-                                                          list_of_names(known, "and") + ")"));
+    throw Error(ErrorKind::usage, header.path.string() + ": has no layer '" + sequence_.layer + "'" +
+                                      (known.empty() ? std::string("; it has no layers")
+                                                     : did_you_mean(sequence_.layer, known) + " (it has " +
+                                                           list_of_names(known, "and") + ")"));
 }
 
 std::optional<FoundChannels> CaptureReader::find_role_channels(const OpenFrame& open, const FrameFile& file,
@@ -171,7 +173,8 @@ void CaptureReader::take_data_of_other_layer(OpenFrame& open) const {
     if (taken.empty()) return;
     header.notes = {"the layer '" + first + "' has a colour alone; " + list_of_names(taken, "and") +
                     (taken.size() == 1 ? " is" : " are") + " read from the layer '" + other +
-                    "' (choose one layer for all with --layer, or 'layer' in capture.json)"};
+                    "' (choose one layer for all with " + spelled(Option::layer) +
+                    ", or 'layer' in capture.json)"};
 }
 
 /// Passes of one file that name nothing but themselves.
@@ -183,7 +186,8 @@ void CaptureReader::note_first_of_parts(OpenFrame& open) const {
     if (const auto others = color->second.file->other_color_parts(); !others.empty())
         open.header.notes.push_back("color is read from the first part with R, G and B; " +
                                     list_of_names(others, "and") + (others.size() == 1 ? " has" : " have") +
-                                    " them, too (choose with --layer, or 'layer' in capture.json)");
+                                    " them, too (choose with " + spelled(Option::layer) +
+                                    ", or 'layer' in capture.json)");
 }
 
 /// Normals and positions under a name that many programs use may be in the camera's space.
@@ -208,10 +212,9 @@ void CaptureReader::note_data_read_as_color(OpenFrame& open) const {
         sequence_.channels.contains(kColorRole))
         return;
     open.header.notes.push_back(
-        "the file's name says " + role +
-        ", but its channels are read as color; where the picture is a file of its own, "
-        "name that one as the capture, and this one with --role " +
-        role + "=" + open.header.path.filename().string());
+        "the file's name says " + role + ", but its channels are read as color" +
+        advice("; where the picture is a file of its own, name that one as the capture, and this one with ",
+               Option::role, role + "=" + open.header.path.filename().string(), ""));
 }
 
 /// The file that Cryptomattes are read from: object_id's own, if it has any, else the main one.
@@ -261,7 +264,7 @@ Image CaptureReader::read_cryptomatte_role(const OpenFrame& open, RoleKind kind)
     const auto& objects = is_mask ? sequence_.cryptomatte->mask : sequence_.object_names;
     const FrameFile& file = cryptomatte_file(open);
     const auto matte = find_cryptomatte(open, objects);
-    if (!matte) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
+    if (!matte) throw Error(ErrorKind::capture, file.path().string() + ": has no Cryptomatte");
     const Window& grid = open.header.data_window;
     if (is_mask) return cryptomatte_mask(file, *matte, objects, grid);
     Image ids = cryptomatte_ids(file, *matte, grid, objects);
@@ -311,7 +314,7 @@ std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) 
     const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
     if (!name.empty()) return named_cryptomatte(mattes, name, open.header.layer, file).name;
     const auto matte = find_cryptomatte(open, {});
-    if (!matte) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
+    if (!matte) throw Error(ErrorKind::capture, file.path().string() + ": has no Cryptomatte");
     return matte->name;
 }
 

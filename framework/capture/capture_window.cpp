@@ -106,10 +106,10 @@ void crop_capture(Capture& capture, const Window& window) {
     CaptureHeader& header = capture.header;
     const Window common = intersection(window, header.data_window);
     if (common.width() < 1 || common.height() < 1)
-        throw Error(ExitCode::capture, header.path.string() +
-                                           ": the region has no pixel of the data window (" +
-                                           text_of(window) + " against " + text_of(header.data_window) +
-                                           "; choose one within it)");
+        throw Error(ErrorKind::capture, header.path.string() +
+                                            ": the region has no pixel of the data window (" +
+                                            text_of(window) + " against " + text_of(header.data_window) +
+                                            "; choose one within it)");
     if (common == header.data_window) return;
     for (auto& [name, image] : capture.images)
         image = place_in_window(std::move(image), header.data_window, common, 0);

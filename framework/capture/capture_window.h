@@ -17,7 +17,7 @@ void scale_capture(Capture& capture, int divisor);
 Window scaled_window(const Window& window, const Window& display, int divisor);
 
 /// The pixels of `window` that the data window covers; the display window stays. Throws
-/// Error(ExitCode::capture) where they have none in common.
+/// Error(ErrorKind::capture) where they have none in common.
 void crop_capture(Capture& capture, const Window& window);
 
 /// The display window and what the data window has beyond it.

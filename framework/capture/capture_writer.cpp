@@ -66,7 +66,7 @@ void require_exact_ids(const std::filesystem::path& path, const Image& image, bo
     const auto ids = image.uints();
     const auto largest = std::max_element(ids.begin(), ids.end());
     if (largest != ids.end() && *largest > kLargestExactFloat)
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     path.string() + ": object id " + std::to_string(*largest) +
                         " is above 16777216, which the profile's floats cannot hold; use native");
 }
@@ -140,7 +140,7 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
                                  channel_names(found->second, image.channels()), ids_as_uint, context));
     }
     if (stored.empty())
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     path.string() + ": the profile '" + profile.id + "' stores none of the roles");
     std::vector<ExrOutputChannel> channels;
     for (const auto& [name, image] : stored)

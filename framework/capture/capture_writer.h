@@ -22,13 +22,13 @@ struct CaptureWriteOptions {
 /// profile's channel names and in its units; of a sum of layers the first holds all and the others 0.
 /// "{layer}" becomes "ViewLayer". With it go the attribute by which the profile is detected, the camera
 /// (aftershade/camera/..., OpenEXR's own names, both matrices), aftershade/jitter_px, aftershade/lights and
-/// chromaticities. Returns the roles that the profile has no way to store. Throws Error(ExitCode::output).
+/// chromaticities. Returns the roles that the profile has no way to store. Throws Error(ErrorKind::output).
 std::vector<std::string> write_capture(const std::filesystem::path& path, const Capture& capture,
                                        const Profile& profile, const CaptureWriteOptions& options);
 
 /// Writes one deep frame with the native channels that `image` has, and the same attributes as
 /// write_capture() of the profile native. Compression other than none and rle becomes zips. Throws
-/// Error(ExitCode::output).
+/// Error(ErrorKind::output).
 void write_deep_capture(const std::filesystem::path& path, const DeepImage& image,
                         const CaptureHeader& header, const CaptureWriteOptions& options);
 
@@ -48,7 +48,7 @@ struct CaptureDocument {
     std::vector<std::string> layers_behind;  ///< patterns; `frames` are the first layer's
 };
 
-/// By rename. Throws Error(ExitCode::output).
+/// By rename. Throws Error(ErrorKind::output).
 void write_capture_document(const std::filesystem::path& path, const CaptureDocument& document);
 
 }  // namespace aftershade

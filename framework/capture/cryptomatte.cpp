@@ -12,6 +12,7 @@
 #include "framework/base/atomic_file.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
 #include "framework/capture/channel_names.h"
@@ -58,7 +59,7 @@ Image read_ranks(const FrameFile& file, const RankChannels& channels, const Wind
     };
     const bool lossy = std::any_of(channels.begin(), channels.end(), is_lost);
     if (lossy || file.type_of(channels[0]) != PixelType::float32)
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     file.path().string() + ": the Cryptomatte ids in " + channels[0] + " are " +
                         (lossy ? "compressed with loss (" + compression + ")" : "stored as half") +
                         ", which destroys them (write them as float, zip)");
@@ -102,8 +103,9 @@ std::string object_elsewhere(const std::string& object, const FrameFile& file) {
         file.path().string() + ": the Cryptomatte" + (missing.size() == 1 ? " " : "s ") +
             joined(names_of(missing), ", ") + (missing.size() == 1 ? " has" : " have") + " no object '" +
             object + "'" +
-            (elsewhere.empty() ? did_you_mean(object, known) + " (inspect --cryptomatte lists them)"
-                               : elsewhere),
+            (elsewhere.empty()
+                 ? did_you_mean(object, known) + advice(" (inspect ", Option::cryptomatte, "", " lists them)")
+                 : elsewhere),
         object);
 }
 
@@ -150,8 +152,8 @@ const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& 
             return layer;
         names.push_back(layer.name);
     }
-    if (layers.empty()) throw Error(ExitCode::capture, file.path().string() + ": has no Cryptomatte");
-    throw Error(ExitCode::capture,
+    if (layers.empty()) throw Error(ErrorKind::capture, file.path().string() + ": has no Cryptomatte");
+    throw Error(ErrorKind::capture,
                 file.path().string() + ": name one of its Cryptomattes, " + list_of_names(names));
 }
 
@@ -165,9 +167,9 @@ const CryptomatteLayer& cryptomatte_with(const std::vector<CryptomatteLayer>& la
         std::erase_if(fitting, [](const CryptomatteLayer* layer) { return !says_object(*layer); });
     if (fitting.size() == 1) return *fitting.front();
     if (fitting.empty()) refuse_unknown_object(layers, *unknown_object(layers.front(), objects), file);
-    throw Error(ExitCode::capture, file.path().string() + ": name one of its Cryptomattes, " +
-                                       list_of_names(names_of(layers)) +
-                                       ", as \"cryptomatte\": {\"layer\": ...} in capture.json");
+    throw Error(ErrorKind::capture, file.path().string() + ": name one of its Cryptomattes, " +
+                                        list_of_names(names_of(layers)) +
+                                        ", as \"cryptomatte\": {\"layer\": ...} in capture.json");
 }
 
 std::uint32_t cryptomatte_hash(const std::string& object) {

@@ -31,7 +31,7 @@ struct CryptomatteLayer {
 class UnknownObject : public Error {
 public:
     UnknownObject(const std::string& message, std::string object)
-        : Error(ExitCode::capture, message), object_(std::move(object)) {}
+        : Error(ErrorKind::capture, message), object_(std::move(object)) {}
     const std::string& object() const { return object_; }  ///< the first of them
 
 private:
@@ -44,12 +44,12 @@ std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file);
 /// What the header names, whether the channels are there or not.
 std::vector<std::string> declared_cryptomattes(const FrameFile& file);
 /// The layer whose name is `name`, or ends in ".<name>"; with "" the only one. Throws
-/// Error(ExitCode::capture) with the names there are.
+/// Error(ErrorKind::capture) with the names there are.
 const CryptomatteLayer& choose_cryptomatte(const std::vector<CryptomatteLayer>& layers,
                                            const std::string& name, const FrameFile& file);
 
 /// The one that has all the objects; of several the one whose name says that it is of objects. `layers` has
-/// one at least. Throws Error(ExitCode::capture) where none has them, or where several do alike.
+/// one at least. Throws Error(ErrorKind::capture) where none has them, or where several do alike.
 const CryptomatteLayer& cryptomatte_with(const std::vector<CryptomatteLayer>& layers,
                                          std::span<const std::string> objects, const FrameFile& file);
 
@@ -72,7 +72,7 @@ std::vector<IdRange> id_ranges(std::span<const TableKey> keys);
 /// Whether an id lies in one of the ranges that id_ranges() gave.
 bool contains(std::span<const IdRange> ranges, std::uint32_t id);
 
-/// Summed coverage of the named objects over all ranks, 0 to 1. Throws Error(ExitCode::capture): ids stored
+/// Summed coverage of the named objects over all ranks, 0 to 1. Throws Error(ErrorKind::capture): ids stored
 /// as half or compressed with loss; a name that the manifest, where there is one, does not have.
 Image cryptomatte_mask(const FrameFile& file, const CryptomatteLayer& layer,
                        const std::vector<std::string>& objects, const Window& grid);

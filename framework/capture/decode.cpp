@@ -27,7 +27,7 @@ DepthRange depth_range(const RoleDecoding& decoding, const DecodeContext& contex
     const auto near_m = decoding.near_m ? decoding.near_m : context.camera.get("near");
     const auto far_m = decoding.far_m ? decoding.far_m : context.camera.get("far");
     if (!near_m || !far_m || !(*near_m < *far_m))
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     context.file +
                         ": this depth needs the camera's near and far, with near < far (give "
                         "'near' and 'far' in capture.json's camera)");
@@ -67,9 +67,9 @@ void scale_by_cosine(Image& depth, const DecodeContext& context, RayScale scale)
     const auto focal_length_mm = context.camera.get("focal_length"),
                sensor_width_mm = context.camera.get("sensor_width");
     if (!focal_length_mm || !sensor_width_mm)
-        throw Error(ExitCode::capture, context.file +
-                                           ": this depth is radial and needs the camera's focal_length and "
-                                           "sensor_width (give them in capture.json's camera)");
+        throw Error(ErrorKind::capture, context.file +
+                                            ": this depth is radial and needs the camera's focal_length and "
+                                            "sensor_width (give them in capture.json's camera)");
     const double focal_px = *focal_length_mm / *sensor_width_mm * context.display.width();
     for (int y = 0; y < depth.height(); ++y)
         for (int x = 0; x < depth.width(); ++x) {
@@ -161,10 +161,10 @@ bool is_id(float value) {
         "; ids that are averaged over samples name no object (render them with one sample a pixel and "
         "without a filter, or render a Cryptomatte)";
     const bool is_between = std::isfinite(value) && value > 0 && value <= kLargestId;
-    throw Error(ExitCode::capture, file + ": object id " + std::to_string(value) + " at pixel (" +
-                                       std::to_string(pixel % width) + ", " + std::to_string(pixel / width) +
-                                       ") is not a whole number from 0 to 4294967040" +
-                                       (is_between ? kRemedyOfMeanIds : ""));
+    throw Error(ErrorKind::capture, file + ": object id " + std::to_string(value) + " at pixel (" +
+                                        std::to_string(pixel % width) + ", " + std::to_string(pixel / width) +
+                                        ") is not a whole number from 0 to 4294967040" +
+                                        (is_between ? kRemedyOfMeanIds : ""));
 }
 
 /// Pixels from `first` on. Those without motion become 0 and are listed.

@@ -26,8 +26,8 @@ struct DecodeContext {
 /// "" where it can. Without figures, so that a sequence says it once.
 std::string range_fault(const std::string& role, const Image& stored, const RoleDecoding& decoding);
 
-/// Depth in m along the view axis; +inf where nothing was hit. Throws Error(ExitCode::capture) where near and
-/// far, or the lens of a radial depth, are needed and not known.
+/// Depth in m along the view axis; +inf where nothing was hit. Throws Error(ErrorKind::capture) where near
+/// and far, or the lens of a radial depth, are needed and not known.
 void decode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContext& context = {});
 
 /// Current minus previous (velocity_next: next minus current) position, px, +y down. Returns the row-major
@@ -50,7 +50,7 @@ void encode_depth(Image& depth, const RoleDecoding& decoding, const DecodeContex
 /// The way back. Pixels that had no motion data get the motion that they were filled with.
 void encode_velocity(Image& velocity, const RoleDecoding& decoding, const DecodeContext& context = {});
 
-/// Floats as unsigned integers. Throws Error(ExitCode::capture) naming the first pixel that is not a whole
+/// Floats as unsigned integers. Throws Error(ErrorKind::capture) naming the first pixel that is not a whole
 /// number.
 Image decode_ids(const Image& stored, const std::string& file, int threads = 1);
 

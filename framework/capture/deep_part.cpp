@@ -49,16 +49,16 @@ void DeepPart::load(std::span<const std::string> channels) {
     image_ = file_.read_deep(part_, std::vector<std::string>(names.begin(), names.end()));
     if (first_.empty()) first_ = image_.first;
     if (first_ != image_.first)
-        throw Error(ExitCode::capture, file_.path().string() +
-                                           ": was changed while it was read (render to another "
-                                           "name and rename the file)");
+        throw Error(ErrorKind::capture, file_.path().string() +
+                                            ": was changed while it was read (render to another "
+                                            "name and rename the file)");
 }
 
 const DeepLayers& DeepPart::reduced() {
     if (reduced_) return *reduced_;
     if (front_.empty())
         throw Error(
-            ExitCode::capture,
+            ErrorKind::capture,
             file_.path().string() + ": its deep part" +
                 (file_.parts().size() > 1 ? " '" + file_.parts()[std::size_t(part_)].name + "'" : "") +
                 " has no channel Z, by which samples are put in order (" + exr_flatten_remedy(file_.path()) +

@@ -31,7 +31,7 @@ public:
     /// Channels that are read next, to unpack them together.
     void expect(std::span<const std::string> channels);
     /// Interleaved in the order given, over the part's data window; `outside` where no sample is, 0 where
-    /// they blend. Depth that does not blend is the middle of Z and ZBack. Throws Error(ExitCode::capture),
+    /// they blend. Depth that does not blend is the middle of Z and ZBack. Throws Error(ErrorKind::capture),
     /// also where the part has no depth Z.
     Image read_floats(std::span<const std::string> channels, const DeepRead& how, float outside);
     /// One channel of unsigned integers; 0 where no sample is.

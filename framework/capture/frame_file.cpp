@@ -124,9 +124,9 @@ void FrameFile::choose_view(const std::string& wanted) {
         views_ = *names;
     view_ = wanted.empty() && !views_.empty() ? views_.front() : wanted;
     if (wanted.empty() || std::find(views_.begin(), views_.end(), wanted) != views_.end()) return;
-    throw Error(ExitCode::capture, path().string() + ": has no view '" + wanted + "'" +
-                                       (views_.empty() ? std::string("; it names no views")
-                                                       : "; it has " + list_of_names(views_, "and")));
+    throw Error(ErrorKind::capture, path().string() + ": has no view '" + wanted + "'" +
+                                        (views_.empty() ? std::string("; it names no views")
+                                                        : "; it has " + list_of_names(views_, "and")));
 }
 
 void FrameFile::add_part(int index, int color_part) {

@@ -23,7 +23,7 @@ namespace aftershade {
 class FrameFile {
 public:
     /// `view` empty: the default view, the first that the file names. Deep parts are reduced to
-    /// `deep_layers`. Throws Error(ExitCode::capture): not readable, no such view (the message lists those
+    /// `deep_layers`. Throws Error(ErrorKind::capture): not readable, no such view (the message lists those
     /// there are).
     FrameFile(const std::filesystem::path& path, const ReadLimits& limits, const std::string& view,
               int deep_layers = 1);

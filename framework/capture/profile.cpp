@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/capture/channel_names.h"
 #include "framework/capture/common_names.h"
@@ -213,12 +214,14 @@ ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart
     if (fitting.empty() && native && find_common_color(part, ""))
         return {native, "no producer's mark, but a plain colour"};
     if (fitting.empty())
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     path + ": no profile fits its channels, " + printable(channel_list(part)) +
-                        " (name one with --profile, or name the channels of each role as \"channels\": "
+                        " (name one with " + spelled(Option::profile) +
+                        ", or name the channels of each role as \"channels\": "
                         "{\"color\": {\"channels\": [\"NAME\", \"NAME\", \"NAME\"]}} in capture.json)");
-    throw Error(ExitCode::usage, path + ": the profiles " + list_of_names(ids, "and") +
-                                     " fit alike (name one with --profile, or as 'profile' in capture.json)");
+    throw Error(ErrorKind::usage, path + ": the profiles " + list_of_names(ids, "and") +
+                                      " fit alike (name one with " + spelled(Option::profile) +
+                                      ", or as 'profile' in capture.json)");
 }
 
 }  // namespace aftershade

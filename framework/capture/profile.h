@@ -134,7 +134,7 @@ struct ProfileChoice {
 
 /// The profile that fits a part's header: by attribute first, else the one that names the most channels, else
 /// `native` where the file has a plain colour. What we wrote under native names is `native`. Throws
-/// Error(ExitCode::capture) where none does and Error(ExitCode::usage) where several do alike, naming the
+/// Error(ErrorKind::capture) where none does and Error(ErrorKind::usage) where several do alike, naming the
 /// remedy; with `has_declared_color`, where capture.json names the colour's channels, it is `native` then.
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,
                              const std::string& path, bool has_declared_color = false);

@@ -1,5 +1,6 @@
 #include "framework/capture/profile_grammar.h"
 
+#include "framework/base/option.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/document/grammar_schema.h"
 #include "framework/document/units.h"
@@ -89,7 +90,7 @@ const Block& profile_block() {
         .name = "profile",
         .thing = "the profile",
         .doc = "The document.",
-        .keys = {required("id", text(), "Name for `--profile` and capture.json."),
+        .keys = {required("id", text(), "Name for `" + spelled(Option::profile) + "` and capture.json."),
                  required("summary", text(), "One sentence."),
                  required("detect", grammar::object(detect_block()), "How its files are detected."),
                  optional("color_space", color_space_form(),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/capture/frame_file.h"
 #include "framework/document/units.h"
 
@@ -34,7 +35,7 @@ void require_one_picture(const std::string& role, const FrameFile& file, const F
     const ExrPart& own = file.merged();
     const ExrPart& picture = main.merged();
     if (own.display_window == picture.display_window || own.data_window == picture.data_window) return;
-    throw Error(ExitCode::capture,
+    throw Error(ErrorKind::capture,
                 file.path().string() + ": the role '" + role + "' has a display window of " +
                     window_text(own.display_window) + ", but that of " + main.path().string() + " is " +
                     window_text(picture.display_window) +
@@ -57,7 +58,8 @@ std::vector<std::string> role_file_faults(const std::string& role, const FrameFi
                          "both alike)");
     if (file.view() != main.view() && !file.view().empty() && !main.view().empty())
         faults.push_back(begin + "in the view '" + file.view() + "', color in '" + main.view() +
-                         "' (choose one view for both with --view, or 'view' in capture.json)");
+                         "' (choose one view for both with " + spelled(Option::view) +
+                         ", or 'view' in capture.json)");
     for (const char* matrix : {"worldToCamera", "worldToNDC", "worldToScreen", "cameraTransform"})
         if (has_other_matrix(own.metadata, picture.metadata, matrix)) {
             faults.push_back(begin + "whose " + matrix +

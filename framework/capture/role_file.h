@@ -10,7 +10,7 @@ class FrameFile;
 
 /// A file of other windows covers another part of the picture only where it says so: by the main file's
 /// display window around its own data window. Else its pixels belong to a picture of another size. Throws
-/// Error(ExitCode::capture).
+/// Error(ErrorKind::capture).
 void require_one_picture(const std::string& role, const FrameFile& file, const FrameFile& main);
 
 /// What shows that the pixels may be those of another picture of this size: another shape of pixels, display

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/document/document.h"
@@ -33,7 +34,7 @@ std::vector<std::string> paths_beside(const FramePattern& pattern) {
 
 /// A sequence is its numbers: a frame whose own file is not there is read from the one whose number is padded
 /// in another way (998 to 1001, -0001), or whose extension is in another case. Throws
-/// Error(ExitCode::capture) where there are two of these, or where `padding_decides` is false and two files
+/// Error(ErrorKind::capture) where there are two of these, or where `padding_decides` is false and two files
 /// have one number.
 FramePattern pattern_on_disk(FramePattern pattern, bool padding_decides) {
     std::map<int, std::vector<std::string>> paths;
@@ -43,8 +44,8 @@ FramePattern pattern_on_disk(FramePattern pattern, bool padding_decides) {
         if (padding_decides && std::ranges::find(found, pattern.path(frame)) != found.end()) continue;
         std::ranges::sort(found);
         if (found.size() > 1)
-            throw Error(ExitCode::capture, "frame " + std::to_string(frame) + " is both " + found[0] +
-                                               " and " + found[1] + "; move one of them away");
+            throw Error(ErrorKind::capture, "frame " + std::to_string(frame) + " is both " + found[0] +
+                                                " and " + found[1] + "; move one of them away");
         if (found[0] != pattern.path(frame)) pattern.name_otherwise(frame, std::move(found[0]));
     }
     return pattern;
@@ -183,7 +184,8 @@ FramePattern pattern_of_folder(const fs::path& folder, const std::string& argume
         ++found.count;
         ++found.digits[last + 1 - first];
     }
-    if (sequences.empty()) throw Error(ExitCode::capture, folder.string() + ": holds no numbered .exr files");
+    if (sequences.empty())
+        throw Error(ErrorKind::capture, folder.string() + ": holds no numbered .exr files");
     const auto most =
         std::ranges::max_element(sequences, {}, [](const auto& one) { return one.second.count; });
     // The fewest digits pad no number beyond what it has, but for numbers that are padded in several ways.
@@ -193,7 +195,7 @@ FramePattern pattern_of_folder(const fs::path& folder, const std::string& argume
                                  .string();
     if (std::ranges::count(sequences, most->second.count, [](const auto& one) { return one.second.count; }) >
         1)
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     folder.string() + ": holds several sequences; name one by its pattern, such as " + text);
     if (sequences.size() > 1) {
         const auto other = sequences.begin() == most ? std::next(most) : sequences.begin();
@@ -232,7 +234,7 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
     if (sequence.files.has_frame()) {
         sequence.frames = whole_frames(find_frames(sequence.files), sequence.subframes);
         if (sequence.frames.empty())
-            throw Error(ExitCode::capture,
+            throw Error(ErrorKind::capture,
                         argument + ": no file fits the pattern " + sequence.files.text() +
                             (sequence.subframes > 1 ? ", or no frame has all its " +
                                                           std::to_string(sequence.subframes) + " sub-frames"
@@ -241,7 +243,7 @@ void find_missing_range(Sequence& sequence, const std::string& argument) {
     }
     const fs::path file = sequence.files.text();
     if (std::error_code failure; !fs::exists(file, failure))
-        throw Error(ExitCode::capture, file.string() + ": no such file" + other_spelling_of(file));
+        throw Error(ErrorKind::capture, file.string() + ": no such file" + other_spelling_of(file));
     sequence.frames = {frame_in_name(file.stem().string()).value_or(1)};
 }
 
@@ -264,9 +266,9 @@ void require_some_file(const Sequence& sequence) {
         return found != there.end() && *found < next;
     };
     if (std::ranges::none_of(sequence.frames, is_there))
-        throw Error(ExitCode::capture, sequence.files.text() + ": no file of the frames " +
-                                           format_frame_range(sequence.frames) + " is there" +
-                                           (there.empty() ? "" : "; there are " + format_frame_range(there)));
+        throw Error(ErrorKind::capture,
+                    sequence.files.text() + ": no file of the frames " + format_frame_range(sequence.frames) +
+                        " is there" + (there.empty() ? "" : "; there are " + format_frame_range(there)));
 }
 
 FrameGaps find_gaps(std::span<const int> frames) {
@@ -299,7 +301,7 @@ std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& 
     Sequence sequence;
     if (const auto path = capture_document(argument)) {
         if (std::error_code failure; !fs::exists(*path, failure))
-            throw Error(ExitCode::capture, argument + ": no such file");
+            throw Error(ErrorKind::capture, argument + ": no such file");
         auto read = read_capture_document(*path, diagnostics);
         if (!read) return std::nullopt;
         sequence = std::move(*read);
@@ -355,7 +357,7 @@ std::vector<fs::path> files_of_sequence(const Sequence& sequence) {
 }
 
 void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics) {
-    const Place place{"--role " + text};
+    const Place place = option_place(Option::role, text);
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
         diagnostics.error(place, "expected role=file, such as depth=z.####.exr");

@@ -75,14 +75,14 @@ Sequence sequence_of_layer(const Sequence& sequence, std::size_t layer);
 std::optional<std::filesystem::path> capture_document(const std::string& argument);
 
 /// `argument` is CAPTURE of the command line. Faults of capture.json go to `diagnostics`; a file, pattern or
-/// folder that holds nothing is Error(ExitCode::capture).
+/// folder that holds nothing is Error(ErrorKind::capture).
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics);
 
 /// Every file that reading the sequence may open, whether it is there or not: those of its frames with their
 /// sub-frames, roles and neighbours, and whatever else fits its patterns on disk.
 std::vector<std::filesystem::path> files_of_sequence(const Sequence& sequence);
 
-/// Adds "--role depth=z.####.exr".
+/// Adds "depth=z.####.exr" of Option::role.
 void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics);
 
 /// What a list of frames leaves out between its first and its last.
@@ -98,7 +98,7 @@ FrameGaps find_gaps(std::span<const int> frames);
 /// Frames that exist for a pattern, sorted.
 std::vector<int> find_frames(const FramePattern& pattern);
 
-/// Throws Error(ExitCode::capture) where the disk has none of the sequence's frames: each would fail by
+/// Throws Error(ErrorKind::capture) where the disk has none of the sequence's frames: each would fail by
 /// itself.
 void require_some_file(const Sequence& sequence);
 

@@ -47,7 +47,7 @@ MaskSource source_of(const LayerFile& file, const std::string& channel) {
             names.push_back(layer.part.empty() ? name : layer.part + "." + name);
         }
     if (channel.empty() && names.size() == 1) return {&file.layers().front(), file.layers().front().channels};
-    throw Error(ExitCode::capture,
+    throw Error(ErrorKind::capture,
                 channel.empty()
                     ? fmt::format("{}: a mask has one channel, and this file has {}: name one of {}",
                                   file.path().string(), names.size(), list_of_names(names))
@@ -83,7 +83,7 @@ AreaShape mask_area(const fs::path& path, const std::string& channel, const Read
     const LayerFile file(path, limits);
     if (file.format() == "PNG") {
         if (!channel.empty())
-            throw Error(ExitCode::capture,
+            throw Error(ErrorKind::capture,
                         path.string() + ": a PNG's channels have no names; leave '" + channel + "' out");
         PngColor color;  // LayerFile applies it, and a mask's numbers are data
         const Image bright = brightness_of(read_png(path, &color));
@@ -96,7 +96,7 @@ AreaShape mask_area(const fs::path& path, const std::string& channel, const Read
     }
     const MaskSource source = source_of(file, channel);
     if (source.layer->type != ComponentType::float32)
-        throw Error(ExitCode::capture, path.string() + ": the channel holds integers; a mask is of floats");
+        throw Error(ErrorKind::capture, path.string() + ": the channel holds integers; a mask is of floats");
     return covered_area(file.read(*source.layer, source.channels), kHalf, source.layer->data_window,
                         source.layer->display_window);
 }

@@ -35,7 +35,7 @@ AreaShape rectangle_area(int x, int y, int width, int height);
 /// Where `coverage`, of one channel, is above `limit`, over `window` in px of a file of that display window.
 AreaShape covered_area(const Image& coverage, float limit, const Window& window, const Window& display);
 /// The pixels of a picture file whose value is above a half: of an OpenEXR file in `channel` (its only one
-/// where that is ""), of a PNG in any colour channel. Throws Error(ExitCode::capture), which begins with the
+/// where that is ""), of a PNG in any colour channel. Throws Error(ErrorKind::capture), which begins with the
 /// path, where the file cannot be read, or has no such channel.
 AreaShape mask_area(const std::filesystem::path& path, const std::string& channel, const ReadLimits& limits);
 

@@ -332,7 +332,7 @@ Comparison compare_files(const fs::path& reference, const fs::path& test, const 
     try {
         FileComparison(*first, *second, rules, visit, result).run();
     } catch (const Error& error) {
-        if (error.exit_code() != ExitCode::capture) throw;  // of the visitor
+        if (error.kind() != ErrorKind::capture) throw;  // of the visitor
         result.verdict = Verdict::file_error;
         result.faults.push_back(error.what());
     }

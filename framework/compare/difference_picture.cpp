@@ -119,7 +119,7 @@ void ComparisonPictures::write_planes(const fs::path& path, const std::vector<Pl
 
 void ComparisonPictures::write_difference(const fs::path& path) const {
     if (differences_.empty())
-        throw Error(ExitCode::output, path.string() + ": the files have no pixel in common to subtract");
+        throw Error(ErrorKind::output, path.string() + ": the files have no pixel in common to subtract");
     if (path.extension() != ".png") {
         write_planes(path, differences_);
         return;
@@ -143,7 +143,7 @@ void ComparisonPictures::write_difference(const fs::path& path) const {
 
 void ComparisonPictures::write_heat_map(const fs::path& path) const {
     if (flips_.empty())
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     path.string() + ": no layer has FLIP to draw (only layers with colours have)");
     if (path.extension() != ".png") {
         write_planes(path, flips_);
@@ -159,7 +159,7 @@ void ComparisonPictures::write_heat_map(const fs::path& path) const {
 
 void ComparisonPictures::write_side_by_side(const fs::path& path, const std::string& title) const {
     if (rows_.empty())
-        throw Error(ExitCode::output, path.string() + ": the files have no pixel in common to show");
+        throw Error(ErrorKind::output, path.string() + ": the files have no pixel in common to show");
     write_png(path, draw_side_by_side(rows_, title));
 }
 

@@ -38,7 +38,7 @@ SideBySideRow side_by_side_row(const LayerComparison& layer, const LayerImages& 
 Image draw_side_by_side(const std::vector<SideBySideRow>& rows, const std::string& title);
 
 /// Keeps what the pictures asked for need while compare_files goes through the layers (its LayerVisitor), and
-/// writes them. Files appear by rename; a failure is Error(ExitCode::output). [one thread at a time]
+/// writes them. Files appear by rename; a failure is Error(ErrorKind::output). [one thread at a time]
 class ComparisonPictures {
 public:
     ComparisonPictures(const DifferenceOptions& options, bool difference, bool heat_map, bool side_by_side)

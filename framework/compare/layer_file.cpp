@@ -183,16 +183,16 @@ LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std
     } else {
         std::error_code error;
         if (!fs::exists(path, error))
-            throw Error(ExitCode::capture, path.string() + ": cannot be opened: No such file or directory");
+            throw Error(ErrorKind::capture, path.string() + ": cannot be opened: No such file or directory");
         if (!fs::is_regular_file(path, error))
-            throw Error(ExitCode::capture, path.string() + ": is not a regular file");
+            throw Error(ErrorKind::capture, path.string() + ": is not a regular file");
         if (fs::file_size(path, error) == 0)
-            throw Error(ExitCode::capture, path.string() + ": the file is empty");
+            throw Error(ErrorKind::capture, path.string() + ": the file is empty");
         if (!std::ifstream(path))
-            throw Error(ExitCode::capture, path.string() + ": cannot be opened: " + std::strerror(errno));
+            throw Error(ErrorKind::capture, path.string() + ": cannot be opened: " + std::strerror(errno));
         if (const std::string fault = lfs_fault(path); !fault.empty())
-            throw Error(ExitCode::capture, path.string() + ": " + fault);
-        throw Error(ExitCode::capture,
+            throw Error(ErrorKind::capture, path.string() + ": " + fault);
+        throw Error(ErrorKind::capture,
                     path.string() + ": is neither OpenEXR nor PNG nor Radiance HDR, by its first bytes");
     }
 }

@@ -31,7 +31,7 @@ struct FileTraits {
 /// Headers are read on construction. [one thread at a time]
 class LayerFile {
 public:
-    /// Throws Error(ExitCode::capture) that begins with the path: missing, no such format, deep, damaged.
+    /// Throws Error(ErrorKind::capture) that begins with the path: missing, no such format, deep, damaged.
     explicit LayerFile(const std::filesystem::path& path, const ReadLimits& limits = {});
     /// Of an OpenEXR file that is open.
     explicit LayerFile(OpenFile exr, const ReadLimits& limits = {});
@@ -45,7 +45,7 @@ public:
     const std::vector<LayerInfo>& layers() const;
     const FileTraits& traits() const;
     /// Some channels of a layer, in the order asked for, over its own data window. Cut-off and damaged pixels
-    /// throw Error(ExitCode::capture).
+    /// throw Error(ErrorKind::capture).
     Image read(const LayerInfo& layer, const std::vector<std::string>& channels) const;
     /// Unpacks what will be requested in one pass, where that fits into the limits. Never fails.
     void prefetch() const;

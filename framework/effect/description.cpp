@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "framework/base/option.h"
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_when.h"
@@ -167,12 +168,14 @@ void describe_inside(const EffectManifest& manifest, std::ostream& out) {
     for (const std::string& source : manifest.sources) out << "  " << source << "\n";
     for (const ModuleSpec& module : manifest.modules)
         out << "  module " << module.name << ": " << module.summary << "\n";
-    if (!manifest.textures.empty()) out << "\ntextures (--tap " << manifest.id << ".<name>)\n";
+    if (!manifest.textures.empty())
+        out << "\ntextures (" << spelled(Option::tap) << " " << manifest.id << ".<name>)\n";
     TextTable textures("  ");
     for (const TextureSpec& texture : manifest.textures)
         textures.add({texture.name, texture_text(texture), texture.doc});
     textures.print(out);
-    if (!manifest.telemetry.empty()) out << "\ntelemetry (--telemetry FILE.json)\n";
+    if (!manifest.telemetry.empty())
+        out << "\ntelemetry (" << spelled(Option::telemetry, "FILE.json") << ")\n";
     TextTable telemetry("  ");
     for (const TelemetrySpec& spec : manifest.telemetry)
         telemetry.add({spec.name, telemetry_text(spec), spec.doc});
@@ -227,7 +230,7 @@ std::string describe_text(const EffectManifest& manifest, bool verbose) {
     for (const OutputSpec& output : manifest.outputs) outputs.add({output.name, output.role, output.doc});
     outputs.print(out);
     if (verbose) describe_inside(manifest, out);
-    else out << "\n--verbose adds its sources, textures, telemetry and passes.\n";
+    else out << "\n" << spelled(Option::verbose) << " adds its sources, textures, telemetry and passes.\n";
     return out.str();
 }
 
@@ -251,14 +254,14 @@ std::string describe_markdown(const EffectManifest& manifest) {
     for (const PresetSpec& preset : manifest.presets)
         out << "| `" << preset.name << "` | " << cell(preset_text(manifest, preset)) << " |\n";
     if (!manifest.textures.empty())
-        out << "\n## Textures\n\nWritten out by `--tap " << manifest.id
+        out << "\n## Textures\n\nWritten out by `" << spelled(Option::tap) << " " << manifest.id
             << ".<name>`.\n\n| name | format | |\n|---|---|---|\n";
     for (const TextureSpec& texture : manifest.textures)
         out << "| `" << texture.name << "` | " << texture_text(texture) << " | " << cell(texture.doc)
             << " |\n";
     if (!manifest.telemetry.empty())
-        out << "\n## Telemetry\n\nNumbers of each frame, written by `--telemetry FILE.json`.\n\n| name | of "
-               "| |\n|---|---|---|\n";
+        out << "\n## Telemetry\n\nNumbers of each frame, written by `"
+            << spelled(Option::telemetry, "FILE.json") << "`.\n\n| name | of | |\n|---|---|---|\n";
     for (const TelemetrySpec& spec : manifest.telemetry)
         out << "| `" << spec.name << "` | " << telemetry_text(spec) << " | " << cell(spec.doc) << " |\n";
     if (!manifest.sources.empty()) out << "\n## Sources\n\n";

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "framework/base/option.h"
 #include "framework/effect/glsl_tokens.h"
 #include "framework/image/role.h"
 
@@ -100,11 +101,12 @@ private:
     /// An effect that accumulates sub-frames needs no warm-up: each frame starts from nothing.
     void warmup() {
         if (manifest_.warmup || manifest_.accumulates_subframes) return;
-        diagnostics_.warning({(manifest_.folder / "effect.json").string()},
-                             "the effect has history, but declares no warmup: a chunk of a sequence begins "
-                             "without the frames before it, and shows a seam (add \"warmup\": "
-                             "{\"frames\": N, \"error\": E}; aftershade check LOOK --warmup CAPTURE "
-                             "measures them)");
+        diagnostics_.warning(
+            {(manifest_.folder / "effect.json").string()},
+            "the effect has history, but declares no warmup: a chunk of a sequence begins "
+            "without the frames before it, and shows a seam (add \"warmup\": "
+            "{\"frames\": N, \"error\": E}" +
+                advice("; aftershade check LOOK ", Option::warmup, "CAPTURE", " measures them") + ")");
     }
 
     static bool has_member(const std::vector<Token>& tokens, const std::string& block,

@@ -9,7 +9,7 @@
 namespace aftershade {
 
 /// Makes <folder>/<id>/ with a manifest, a shader and a look, whole or not at all, and returns the files with
-/// their numbers of lines. `id` is in snake_case. Throws Error(ExitCode::output), also where something has
+/// their numbers of lines. `id` is in snake_case. Throws Error(ErrorKind::output), also where something has
 /// that path.
 std::vector<std::pair<std::filesystem::path, int>> make_effect(const std::filesystem::path& folder,
                                                                const std::string& id);

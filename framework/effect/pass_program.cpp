@@ -64,19 +64,13 @@ bool has_loop(const ShaderSource& source) {
     return has_any_word(source, {"for", "while"});
 }
 
-std::string trimmed(std::ostringstream& text) {
-    std::string result = text.str();
-    while (result.ends_with('\n')) result.pop_back();
-    return result;
-}
-
 }  // namespace
 
 ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder, ProgramStore store)
     : context_(context),
       glsl_folder_(std::move(glsl_folder)),
       store_(std::move(store)),
-      full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ExitCode::effect)),
+      full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ErrorKind::effect)),
       over_tiles_(host_vertex("tiles.vert")) {}
 
 ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostics& faults) {
@@ -224,11 +218,11 @@ void ProgramCache::drop_idle() {
 }
 
 std::string ProgramCache::host_vertex(const std::string& file) const {
-    std::istringstream lines(read_text_file(glsl_folder_ / "host" / file, ExitCode::effect));
+    std::istringstream lines(read_text_file(glsl_folder_ / "host" / file, ErrorKind::effect));
     std::string text, line;
     while (std::getline(lines, line)) {
         const std::optional<ShaderInclude> include = parse_include(line);
-        text += include ? read_text_file(glsl_folder_ / include->name, ExitCode::effect) : line + "\n";
+        text += include ? read_text_file(glsl_folder_ / include->name, ErrorKind::effect) : line + "\n";
     }
     return text;
 }
@@ -238,7 +232,7 @@ std::shared_ptr<const gpu::Program> ProgramCache::host(const std::string& file,
                                                        const std::string& vertex) {
     ProgramSources sources;
     sources.vertex = vertex.empty() ? full_screen_ : host_vertex(vertex);
-    sources.main.text = read_text_file(glsl_folder_ / "host" / file, ExitCode::effect);
+    sources.main.text = read_text_file(glsl_folder_ / "host" / file, ErrorKind::effect);
     std::string symbols;
     for (const std::string& define : defines) symbols += "#define " + define + " 1\n";
     for (std::string* const text : {&sources.main.text, &sources.vertex})
@@ -294,9 +288,7 @@ std::shared_ptr<const gpu::Program> ProgramCache::get(const ShaderContext& conte
             if (!faults.has_errors()) faults.error({(pass.folder / pass.shader).string()}, error.what());
         }
     }
-    std::ostringstream text;
-    faults.print(text);
-    throw Error(ExitCode::effect, trimmed(text));
+    throw Error(ErrorKind::effect, faults);
 }
 
 }  // namespace aftershade

@@ -45,7 +45,7 @@ public:
     ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder,
                  ProgramStore store = ProgramStore::from_environment());
 
-    /// The program of a draw or a compute pass. Throws Error(ExitCode::effect) with one line per fault:
+    /// The program of a draw or a compute pass. Throws Error(ErrorKind::effect) with one line per fault:
     /// "effects/bokeh/coc.frag:6:17: error: 'parm' undeclared   [pass coc, llvmpipe ...]".
     std::shared_ptr<const gpu::Program> get(const ShaderContext& context);
     /// The texts that get() compiles; what is wrong with them goes to `faults`.

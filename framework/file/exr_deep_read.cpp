@@ -1,4 +1,5 @@
 // Deep parts: what their blocks claim is checked before the library allocates anything for them.
+#include "framework/base/option.h"
 #include "framework/file/exr_internal.h"
 
 #include <Imath/ImathBox.h>
@@ -93,8 +94,8 @@ std::vector<std::uint64_t> check_deep_blocks(const DeepSource& source, int part)
             fail(source.path, fmt::format("damaged: {}: {}", block_label(header, i), fault));
         if (sizes.samples > source.limits.max_image_bytes)
             fail(source.path,
-                 fmt::format("{} has {} bytes of samples, the limit is {} (--max-image-bytes)",
-                             block_label(header, i), sizes.samples, source.limits.max_image_bytes));
+                 fmt::format("{} has {} bytes of samples, the limit is {} ({})", block_label(header, i),
+                             sizes.samples, source.limits.max_image_bytes, spelled(Option::max_image_bytes)));
         bytes.push_back(sizes.samples);
     }
     return bytes;
@@ -211,11 +212,9 @@ private:
         const std::uint64_t wanted = samples * image_.channels.size() * sizeof(float);
         if (wanted > source_.limits.max_image_bytes || samples > std::numeric_limits<std::uint32_t>::max())
             fail(source_.path,
-                 fmt::format(
-                     "{} channels of {} deep samples take {} bytes, the limit is {} (--max-image-bytes, or "
-                     "{})",
-                     image_.channels.size(), samples, wanted, source_.limits.max_image_bytes,
-                     exr_flatten_remedy(source_.path)));
+                 fmt::format("{} channels of {} deep samples take {} bytes, the limit is {} ({}, or {})",
+                             image_.channels.size(), samples, wanted, source_.limits.max_image_bytes,
+                             spelled(Option::max_image_bytes), exr_flatten_remedy(source_.path)));
         image_.first.resize(counts_.size() + 1);
         for (std::size_t i = 0; i < counts_.size(); ++i) image_.first[i + 1] = image_.first[i] + counts_[i];
         for (DeepImage::Channel& channel : image_.channels) {

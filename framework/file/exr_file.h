@@ -90,8 +90,8 @@ struct ExrRequest {
 bool is_exr_file(const std::filesystem::path& path);
 
 /// An open file. Headers are read and held against the limits on construction; nothing larger than a header
-/// is allocated before. Every failure is Error(ExitCode::capture) that begins with the path. [one thread at a
-/// time]
+/// is allocated before. Every failure is Error(ErrorKind::capture) that begins with the path. [one thread at
+/// a time]
 class ExrFile {
 public:
     explicit ExrFile(const std::filesystem::path& path, const ReadLimits& limits = {});
@@ -160,8 +160,8 @@ struct HalfOverflow {
 };
 
 /// Writes one scan-line part: to a temporary file in the same folder, flushed, then renamed over `path`.
-/// Throws Error(ExitCode::output) that begins with the path; then no temporary file remains and an older file
-/// is whole. Returns what a half could not hold, channels in the order given.
+/// Throws Error(ErrorKind::output) that begins with the path; then no temporary file remains and an older
+/// file is whole. Returns what a half could not hold, channels in the order given.
 std::vector<HalfOverflow> write_exr(const std::filesystem::path& path,
                                     std::span<const ExrOutputChannel> channels,
                                     const ExrWriteOptions& options);

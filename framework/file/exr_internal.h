@@ -70,13 +70,13 @@ struct FileCloser {
 };
 using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 
-/// Throws Error(ExitCode::capture) where `path` is missing or unreadable.
+/// Throws Error(ErrorKind::capture) where `path` is missing or unreadable.
 OpenFile open_exr(const std::filesystem::path& path);
 
 /// A regular file as Imf reads it. Keeps its size, so that sizes claimed in it can be checked.
 class FileStream final : public Imf::IStream {
 public:
-    /// Throws Error(ExitCode::capture) where the file is empty or not a regular one.
+    /// Throws Error(ErrorKind::capture) where the file is empty or not a regular one.
     explicit FileStream(OpenFile file);
 
     bool read(char bytes[], int count) override;
@@ -120,15 +120,15 @@ struct FileLayout {
 };
 
 /// Walks the headers without keeping anything, and returns the version field; the file's position is then
-/// their end. Throws Error(ExitCode::capture) for sizes that the file cannot hold, for more parts, channels
+/// their end. Throws Error(ErrorKind::capture) for sizes that the file cannot hold, for more parts, channels
 /// or attributes than the limits, and for compressions that this build's library does not read.
 int scan_headers(FileStream& file, const std::filesystem::path& path);
-/// Reads the headers and holds them against the limits; throws Error(ExitCode::capture).
+/// Reads the headers and holds them against the limits; throws Error(ErrorKind::capture).
 FileLayout read_layout(FileStream& file, const std::filesystem::path& path, const ReadLimits& limits);
 
 /// Every block of a flat part (of level 0 where tiled) lies whole in the file, has pixels and, where not
 /// compressed, all of them: the library reads a short block as what its buffer held before. Throws
-/// Error(ExitCode::capture).
+/// Error(ErrorKind::capture).
 void check_blocks(FileStream& file, const std::filesystem::path& path, const FileLayout& layout, int part);
 
 /// Where the blocks of a part (of level 0 where tiled) begin.
@@ -164,7 +164,7 @@ struct DeepSource {
 };
 
 /// The samples of the named channels of a deep part, level 0 where tiled. The sizes of the blocks and the
-/// counts of samples are held against the file and the limits first. Throws Error(ExitCode::capture).
+/// counts of samples are held against the file and the limits first. Throws Error(ErrorKind::capture).
 DeepImage read_deep(const DeepSource& source, int part, std::span<const std::string> names);
 
 bool is_tiled_part(const Imf::Header& header);
@@ -185,7 +185,7 @@ ExrPart describe_part(const Imf::Header& header);
 std::string part_label(const std::vector<ExrPart>& parts, int part);
 
 [[noreturn]] inline void fail(const std::filesystem::path& path, const std::string& what,
-                              ExitCode code = ExitCode::capture) {
+                              ErrorKind code = ErrorKind::capture) {
     throw Error(code, path.string() + ": " + printable(what));
 }
 
@@ -196,9 +196,9 @@ std::string library_reason(const std::exception& error);
 bool is_memory_text(std::string_view text);
 
 /// Runs `work`; whatever it throws leaves as Error(code), "<path>: <what>: <reason>", or as
-/// Error(ExitCode::memory).
+/// Error(ErrorKind::memory).
 template <class Work>
-decltype(auto) translate_errors(const std::filesystem::path& path, ExitCode code, const char* what,
+decltype(auto) translate_errors(const std::filesystem::path& path, ErrorKind code, const char* what,
                                 Work&& work) {
     try {
         return std::forward<Work>(work)();
@@ -208,7 +208,7 @@ decltype(auto) translate_errors(const std::filesystem::path& path, ExitCode code
         // Running out of memory says nothing about the file; a length_error does. The library's threads pass
         // on text alone.
         if (dynamic_cast<const std::bad_alloc*>(&error) || is_memory_text(error.what()))
-            fail(path, out_of_memory_text(std::bad_alloc()), ExitCode::memory);
+            fail(path, out_of_memory_text(std::bad_alloc()), ErrorKind::memory);
         fail(path, std::string(what) + ": " + library_reason(error), code);
     } catch (...) {
         fail(path, std::string(what) + ": unknown reason", code);

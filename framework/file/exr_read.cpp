@@ -112,7 +112,7 @@ struct ExrFile::Impl {
 ExrFile::Impl::Impl(OpenFile opened, const ReadLimits& file_limits)
     : path(opened.path()), limits(file_limits) {
     bound_library();
-    exr::translate_errors(path, ExitCode::capture, "damaged header", [&] {
+    exr::translate_errors(path, ErrorKind::capture, "damaged header", [&] {
         stream = std::make_unique<exr::FileStream>(std::move(opened));
         layout = exr::read_layout(*stream, path, limits);
         // An incomplete part is refused, so the library looks for blocks only where all were found.
@@ -219,7 +219,7 @@ Image ExrFile::Impl::read(const ExrRequest& request) {
     check_type(part);
     check_channels(part, request.channels, request.type);
     check_bytes(part, request.channels.size());
-    return exr::translate_errors(path, ExitCode::capture, "damaged pixel data", [&] {
+    return exr::translate_errors(path, ErrorKind::capture, "damaged pixel data", [&] {
         exr::check_blocks(*stream, path, layout, part);
         Imf::FrameBuffer frame;
         Image image = add_slices(frame, request);
@@ -240,7 +240,7 @@ Image ExrFile::Impl::read_repeated(int part, const std::string& name, ComponentT
     check_bytes(part, 1);
     // read_layout refuses samplings that do not divide the window.
     Image samples(info.data_window.width() / across, info.data_window.height() / down, 1, type);
-    exr::translate_errors(path, ExitCode::capture, "damaged pixel data", [&] {
+    exr::translate_errors(path, ErrorKind::capture, "damaged pixel data", [&] {
         exr::check_blocks(*stream, path, layout, part);
         Imf::FrameBuffer frame;
         frame.insert(name, Imf::Slice::Make(type == ComponentType::float32 ? Imf::FLOAT : Imf::UINT,
@@ -278,7 +278,7 @@ void ExrFile::Impl::prefetch(int part, std::span<const ExrRequest> requests) {
     }
     if (together.size() < 2) return;
     check_type(part);
-    exr::translate_errors(path, ExitCode::capture, "damaged pixel data", [&] {
+    exr::translate_errors(path, ErrorKind::capture, "damaged pixel data", [&] {
         exr::check_blocks(*stream, path, layout, part);
         for (Kept& entry : together) entry.image = add_slices(frame, entry.request);
         read_pixels(part, frame);
@@ -329,7 +329,7 @@ DeepImage ExrFile::read_deep(int part, std::span<const std::string> channels) co
         exr::fail(path(), fmt::format("{} is of type '{}', not deep", exr::part_label(impl_->parts, part),
                                       info.type));
     impl_->check_channels(part, channels, ComponentType::float32);
-    return exr::translate_errors(path(), ExitCode::capture, "damaged pixel data", [&] {
+    return exr::translate_errors(path(), ErrorKind::capture, "damaged pixel data", [&] {
         return exr::read_deep({impl_->path, impl_->limits, *impl_->stream, impl_->layout, *impl_->file}, part,
                               channels);
     });
@@ -340,7 +340,7 @@ Image ExrFile::read_luminance_chroma(int part) const {
     impl_->check_bytes(part, 4);
     // The library's converter of 3.1 takes a file's first part.
     if (part != 0) exr::fail(path(), "luminance-chroma is supported in the first part only");
-    return exr::translate_errors(path(), ExitCode::capture, "damaged pixel data", [&] {
+    return exr::translate_errors(path(), ErrorKind::capture, "damaged pixel data", [&] {
         const Window& window = parts()[std::size_t(part)].data_window;
         exr::StreamView stream(*impl_->stream);
         Imf::RgbaInputFile input(stream, Imf::globalThreadCount());

@@ -50,7 +50,7 @@ bool is_own_attribute(std::string_view name) {
 }
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& what) {
-    exr::fail(path, what, ExitCode::output);
+    exr::fail(path, what, ErrorKind::output);
 }
 
 void check_name(const fs::path& path, const char* what, const std::string& name) {
@@ -246,7 +246,7 @@ std::vector<HalfOverflow> write_exr(const fs::path& path, std::span<const ExrOut
         assert(channel.component >= 0 && channel.component < channel.image->channels());
         assert((channel.image->type() == ComponentType::uint32) == (channel.type == PixelType::uint32));
     }
-    return exr::translate_errors(path, ExitCode::output, "cannot be written", [&] {
+    return exr::translate_errors(path, ErrorKind::output, "cannot be written", [&] {
         const Imf::Header header = make_header(path, channels, options);
         ExrOutputStream stream(path);
         if (exr::is_scan_line_method(header.compression())) {
@@ -266,7 +266,7 @@ std::vector<HalfOverflow> write_exr(const fs::path& path, std::span<const ExrOut
 }
 
 void write_deep_exr(const fs::path& path, const DeepImage& image, const ExrWriteOptions& options) {
-    exr::translate_errors(path, ExitCode::output, "cannot be written", [&] {
+    exr::translate_errors(path, ErrorKind::output, "cannot be written", [&] {
         Imf::Header header = make_header(path, {}, options);
         header.setType(Imf::DEEPSCANLINE);
         const Imath::Box2i& window = header.dataWindow();

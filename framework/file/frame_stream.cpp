@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/file/png_file.h"
 #include "framework/file/quantized.h"
 
@@ -22,10 +23,12 @@ namespace aftershade {
 
 namespace {
 
-constexpr const char* kName = "-o -";
+std::string name() {
+    return spelled(Option::output, "-");
+}
 
 Error stream_error(const std::string& what) {
-    return {ExitCode::output, std::string(kName) + ": " + what};
+    return {ErrorKind::output, name() + ": " + what};
 }
 
 template <class Unsigned>
@@ -53,7 +56,7 @@ std::string frame_bytes(StreamFormat format, const Image& display) {
         case StreamFormat::rgba64le: return raw_bytes<std::uint16_t>(display, 4);
         case StreamFormat::png: break;
     }
-    return encode_png(kName, display, {}, {.is_srgb = true});
+    return encode_png(name(), display, {}, {.is_srgb = true});
 }
 
 /// "24", "23.98", "30000/1001".
@@ -88,9 +91,9 @@ std::string ffmpeg_input_options(StreamFormat format, int width, int height, dou
 
 FrameStream FrameStream::of_standard_output(StreamFormat format) {
     if (isatty(STDOUT_FILENO))
-        throw Error(ExitCode::usage, std::string(kName) +
-                                         ": standard output is a terminal, which cannot show frames; pipe "
-                                         "them into a program or a file");
+        throw Error(ErrorKind::usage, name() +
+                                          ": standard output is a terminal, which cannot show frames; pipe "
+                                          "them into a program or a file");
     std::fflush(stdout);
     const int descriptor = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     if (descriptor < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)

@@ -27,7 +27,7 @@ class FrameStream {
 public:
     /// Takes standard output for the frames; what this process prints to it from now on goes to standard
     /// error. A reader that has gone is an error of write() then, and no signal. Throws
-    /// Error(ExitCode::usage) where standard output is a terminal.
+    /// Error(ErrorKind::usage) where standard output is a terminal.
     static FrameStream of_standard_output(StreamFormat format);
 
     /// Closes the descriptor.
@@ -36,7 +36,7 @@ public:
     FrameStream& operator=(FrameStream&&) = delete;
 
     /// The display-referred picture of a frame, 3 or 4 float channels, with 1 for an alpha that is not there;
-    /// formats without alpha leave it out. Throws Error(ExitCode::output) where the picture has another size
+    /// formats without alpha leave it out. Throws Error(ErrorKind::output) where the picture has another size
     /// than the one before, or where the reader has gone.
     void write(int frame, const Image& display);
 

@@ -10,7 +10,7 @@ namespace aftershade {
 /// Whether a file begins as a Radiance picture does. False where it cannot be read.
 bool is_hdr_file(const std::filesystem::path& path);
 
-/// Three channels, scene-linear, rows from the top. Throws Error(ExitCode::capture) that begins with the
+/// Three channels, scene-linear, rows from the top. Throws Error(ErrorKind::capture) that begins with the
 /// path: missing, damaged, cut off (stb itself would fill the rest with zeros).
 Image read_hdr(const std::filesystem::path& path);
 

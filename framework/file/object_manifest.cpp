@@ -27,8 +27,8 @@ std::optional<std::string> manifest_beside(const fs::path& exr, const std::optio
         text = read_file_below(fs::canonical(exr, failure).parent_path(), *name, kMaxBytes, fault_of_target);
     if (fault.empty() || fault_of_target.empty()) return text;
     if (fault == kNoSuchFile) return std::nullopt;
-    throw Error(ExitCode::capture, (folder / *name).string() + ", the Cryptomatte manifest of " +
-                                       exr.filename().string() + ": " + fault);
+    throw Error(ErrorKind::capture, (folder / *name).string() + ", the Cryptomatte manifest of " +
+                                        exr.filename().string() + ": " + fault);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::vector<std::string> cryptomatte_keys(const ExrMetadata& metadata);
 
 /// The names of the Cryptomatte under that key. Empty where its manifest is absent or damaged: it is only a
 /// help. A manif_file lies in the folder of the EXR file; where that is a link, it may lie in that of its
-/// target. Throws Error(ExitCode::capture) where it is not a file that may be read.
+/// target. Throws Error(ErrorKind::capture) where it is not a file that may be read.
 std::vector<ManifestEntry> read_object_manifest(const std::filesystem::path& exr, const ExrMetadata& metadata,
                                                 const std::string& key);
 

@@ -18,7 +18,7 @@
 
 namespace aftershade {
 
-/// Every failure is Error(ExitCode::output) that begins with the final path.
+/// Every failure is Error(ErrorKind::output) that begins with the final path.
 class OutputStream {
 public:
     explicit OutputStream(const std::filesystem::path& path) : path_(path), atomic_(path) {
@@ -50,7 +50,7 @@ public:
     }
 
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ExitCode::output, path_.string() + ": " + what);
+        throw Error(ErrorKind::output, path_.string() + ": " + what);
     }
 
 private:

@@ -34,9 +34,9 @@ Image read_exr_picture(const fs::path& path) {
     if (present.empty() || present[0] == "A") {
         std::vector<std::string> names;
         for (const ExrChannel& channel : part.channels) names.push_back(channel.name);
-        throw Error(ExitCode::capture, path.string() +
-                                           ": the first part has no channel R, G, B or Y; it has " +
-                                           list_of_names(names, "and"));
+        throw Error(ErrorKind::capture, path.string() +
+                                            ": the first part has no channel R, G, B or Y; it has " +
+                                            list_of_names(names, "and"));
     }
     const Image stored = file.read_floats(0, present);
     Image image(stored.width(), stored.height(), kRgba);
@@ -55,8 +55,8 @@ Image read_png_picture(const fs::path& path, PictureSpace space) {
     PngColor color;
     const Image stored = read_png(path, &color);
     if (space == PictureSpace::srgb && !color.is_srgb())
-        throw Error(ExitCode::capture, path.string() + ": its colours are not sRGB but of " + color.space +
-                                           ", which is not converted; save the picture as sRGB");
+        throw Error(ErrorKind::capture, path.string() + ": its colours are not sRGB but of " + color.space +
+                                            ", which is not converted; save the picture as sRGB");
     const auto light = [&](float value) {
         return color.gamma ? std::pow(double(value), 1 / *color.gamma) : decode_srgb(double(value));
     };

@@ -125,7 +125,7 @@ std::string encode_png(const std::string& name, const Image& display, const PngT
     assert(channels == 1 || channels == 3 || channels == 4);
     assert(!display.empty());
     if (display.width() > kMaxSidePx || display.height() > kMaxSidePx) {
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     fmt::format("{}: {} x {} px is too large for PNG output, the limit is {} px a side", name,
                                 display.width(), display.height(), kMaxSidePx));
     }
@@ -137,7 +137,7 @@ std::string encode_png(const std::string& name, const Image& display, const PngT
     const int written = stbi_write_png_to_func(write_to_sink, &sink, display.width(), display.height(),
                                                channels, bytes.data(), display.width() * channels);
     if (sink.failure) std::rethrow_exception(sink.failure);
-    if (written == 0) throw Error(ExitCode::memory, name + ": " + out_of_memory_text(std::bad_alloc()));
+    if (written == 0) throw Error(ErrorKind::memory, name + ": " + out_of_memory_text(std::bad_alloc()));
     constexpr std::size_t kSizeChunkBytes = kChunkHeadBytes + 13 + kChecksumBytes;  // IHDR, the first
     const std::string perceptual(1, '\0');                                          // the rendering intent
     std::string chunks = meaning.is_srgb ? chunk("sRGB", perceptual) : "";

@@ -22,12 +22,12 @@ struct PngMeaning {
 
 /// The bytes of a PNG of display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels:
 /// round(255 * clamp(v)), NaN as 0. A fourth channel is unassociated alpha. `name` is what the
-/// Error(ExitCode::output) of a picture that is too large begins with.
+/// Error(ErrorKind::output) of a picture that is too large begins with.
 std::string encode_png(const std::string& name, const Image& display, const PngText& text = {},
                        const PngMeaning& meaning = {});
 
 /// Writes these bytes. The file appears by rename from a temporary file in the same folder. Throws
-/// Error(ExitCode::output).
+/// Error(ErrorKind::output).
 void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {},
                const PngMeaning& meaning = {});
 
@@ -38,7 +38,7 @@ std::optional<std::string> read_png_text(const std::filesystem::path& path, cons
 std::optional<PngColor> read_png_color(const std::filesystem::path& path);
 
 /// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored; `color` gets what they mean.
-/// Throws Error(ExitCode::capture).
+/// Throws Error(ErrorKind::capture).
 Image read_png(const std::filesystem::path& path, PngColor* color = nullptr);
 
 }  // namespace aftershade

@@ -93,7 +93,7 @@ inline std::string fault_of_size(int width, int height, int channels) {
 }
 
 [[noreturn]] inline void fail(const std::filesystem::path& path, const std::string& what) {
-    throw Error(ExitCode::capture, path.string() + ": " + what);
+    throw Error(ErrorKind::capture, path.string() + ": " + what);
 }
 
 }  // namespace aftershade::stb

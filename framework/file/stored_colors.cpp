@@ -11,13 +11,16 @@
 #include <fmt/ranges.h>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 
 namespace aftershade {
 
 namespace {
 
-constexpr const char* kRemedy = " (choose with --color-space, or \"color_space\" in capture.json)";
+std::string remedy() {
+    return " (choose with " + spelled(Option::color_space) + ", or \"color_space\" in capture.json)";
+}
 
 /// What one attribute says of the colours.
 struct Statement {
@@ -88,7 +91,7 @@ std::string what_counts(const StoredColors& colors) {
 
 void warn_of_data(const Statement& data, StoredColors& colors) {
     colors.warnings.push_back(said(data) + ", so color is read from channels that hold no colours; " +
-                              what_counts(colors) + kRemedy);
+                              what_counts(colors) + remedy());
 }
 
 }  // namespace
@@ -127,11 +130,11 @@ StoredColors stored_colors(const ExrMetadata& metadata, const ExrMetadata& part)
             colors.unknown = other.value;
         if (!other.encoding)
             colors.warnings.push_back(said(other) + ", which is not a known colour space; " +
-                                      what_counts(colors) + kRemedy);
+                                      what_counts(colors) + remedy());
         else if (!is_color(other)) warn_of_data(other, colors);
         else if (!agree(*other.encoding, colors.encoding))
             colors.warnings.push_back(said(*counts) + ", but " + said(other) + "; " + counts->attribute +
-                                      " counts" + kRemedy);
+                                      " counts" + remedy());
     }
     return colors;
 }
@@ -148,11 +151,11 @@ StoredColors declared_colors(const std::string& space, const std::string& source
 void light_of_stored(Image& image, const StoredColors& stored, const Chromaticities& primaries,
                      const std::string& place) {
     if (!stored.encoding.is_color())
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     place + ": the colours are stored as '" + stored.name + "' (" + stored.source +
                         "), a curve that this program cannot decode (convert the file to scene-linear light; "
-                        "or, if it holds that already, name its primaries with --color-space, or "
-                        "\"color_space\" in capture.json)");
+                        "or, if it holds that already, name its primaries with " +
+                        spelled(Option::color_space) + ", or \"color_space\" in capture.json)");
     decode_curve(image, stored.encoding);
     if (stored.encoding.primaries != primaries)
         convert_colors(image, conversion_matrix(stored.encoding.primaries, primaries));

@@ -34,7 +34,7 @@ StoredColors stored_colors(const ExrMetadata& metadata, const ExrMetadata& part)
 StoredColors declared_colors(const std::string& space, const std::string& source);
 
 /// From what the file stores to light of the primaries that header has, and back. Throws
-/// Error(ExitCode::capture), which begins with `place`, where the file's curve is one that this program does
+/// Error(ErrorKind::capture), which begins with `place`, where the file's curve is one that this program does
 /// not have.
 void light_of_stored(Image& image, const StoredColors& stored, const Chromaticities& primaries,
                      const std::string& place);

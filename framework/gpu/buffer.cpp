@@ -24,7 +24,7 @@ void Handle<ObjectKind::buffer>::remove(Context& context, unsigned int name) noe
 Buffer::Buffer(Context& context, std::size_t bytes, std::string label)
     : bytes_(bytes), label_(std::move(label)) {
     if (bytes_ == 0)
-        throw Error(ExitCode::effect, fmt::format("buffer '{}': 0 bytes; it must hold something", label_));
+        throw Error(ErrorKind::effect, fmt::format("buffer '{}': 0 bytes; it must hold something", label_));
     context.make_current();
     const GladGLContext& gl = context.gl();
     GLuint name = 0;

@@ -15,7 +15,7 @@ namespace aftershade::gpu {
 /// [the context's thread]
 class Buffer {
 public:
-    /// Zero-filled. Throws Error(ExitCode::effect) when GL has no memory for it.
+    /// Zero-filled. Throws Error(ErrorKind::effect) when GL has no memory for it.
     Buffer(Context& context, std::size_t bytes, std::string label);
 
     std::size_t size() const { return bytes_; }

@@ -14,7 +14,7 @@ namespace aftershade::gpu {
 namespace {
 
 [[noreturn]] void fail(const Program& program, std::string_view why) {
-    throw Error(ExitCode::effect, fmt::format("{}: {}", program.label(), why));
+    throw Error(ErrorKind::effect, fmt::format("{}: {}", program.label(), why));
 }
 
 GLenum gl_access(Access access) {

@@ -53,9 +53,9 @@ struct Bindings {
 /// Draws one triangle over all targets, which share one size; gl_FragCoord (0.5, 0.5) is texel (0, 0), the
 /// top left, and NDC has +y at the top and z in [0, 1]. The vertex shader of `program` makes the triangle
 /// from gl_VertexID 0..2. A texture may be sampled while it is drawn to where the one level that is seen is
-/// not a target. Throws Error(ExitCode::effect) naming `program` if GL reports an error or the targets do not
-/// form a complete framebuffer. After a pass with images or storage blocks stands a barrier for everything
-/// that a later pass or a command from a buffer may read; the same holds for the functions below.
+/// not a target. Throws Error(ErrorKind::effect) naming `program` if GL reports an error or the targets do
+/// not form a complete framebuffer. After a pass with images or storage blocks stands a barrier for
+/// everything that a later pass or a command from a buffer may read; the same holds for the functions below.
 void draw(Context& context, const Program& program, std::span<const Target> targets, const Bindings& bindings,
           Blend blend = Blend::none);
 

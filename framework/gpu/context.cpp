@@ -101,7 +101,7 @@ void Context::check(std::string_view what) {
     const bool is_memory = std::ranges::any_of(
         reported, [](const std::string& text) { return text.find("GL_OUT_OF_MEMORY") != std::string::npos; });
     if (is_memory) abandon();
-    throw Error(is_memory ? ExitCode::memory : ExitCode::effect,
+    throw Error(is_memory ? ErrorKind::memory : ErrorKind::effect,
                 fmt::format("{}{}: {} [{}]", is_memory ? "out of memory: " : "", what,
                             fmt::join(reported, "; "), impl_->info.renderer));
 }
@@ -211,7 +211,7 @@ void Context::Impl::load_functions() {
     info.vendor = gl_string(*platform, GL_VENDOR);
     info.software = is_software_renderer(info.renderer);
     if (version < GLAD_MAKE_VERSION(4, 5)) {
-        throw Error(ExitCode::gl,
+        throw Error(ErrorKind::gl,
                     fmt::format("{} offers GL '{}'; 4.5 core is needed", info.renderer, info.version));
     }
 }

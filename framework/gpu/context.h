@@ -59,14 +59,14 @@ enum class SelfTest { now, at_first_use };
 /// selects]
 class Context {
 public:
-    /// Throws Error(ExitCode::gl) that lists each backend tried, why it was refused, and a software backend
-    /// that works in its place, and Error(ExitCode::memory) where a limit leaves too little address space.
+    /// Throws Error(ErrorKind::gl) that lists each backend tried, why it was refused, and a software backend
+    /// that works in its place, and Error(ErrorKind::memory) where a limit leaves too little address space.
     explicit Context(Backend backend, SelfTest when = SelfTest::now);
     /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
     /// one. Throws as the other.
     explicit Context(const SharedEglContext& shared);
     /// Of the renderer of one that works, so without a self-test. Each may work in a thread of its own.
-    /// Throws Error(ExitCode::gl). [any thread]
+    /// Throws Error(ErrorKind::gl). [any thread]
     explicit Context(SiblingOf other);
     ~Context();
     Context(const Context&) = delete;
@@ -76,7 +76,7 @@ public:
     /// Stays the same while the same work is done again.
     ObjectCounts objects() const;
     void make_current();
-    /// The self-test that SelfTest::at_first_use has put off. Throws Error(ExitCode::gl).
+    /// The self-test that SelfTest::at_first_use has put off. Throws Error(ErrorKind::gl).
     void test_once();
     /// Whether a new texture holds zeros, as llvmpipe's do. Found out with memory that held something else;
     /// false on hardware, where GL leaves it open.
@@ -88,8 +88,8 @@ public:
     void abandon() noexcept;
     /// Waits until the driver has done everything asked so far (glFinish).
     void finish();
-    /// Throws Error(ExitCode::effect) if GL has reported an error (KHR_debug, or glGetError) since the last
-    /// call, and Error(ExitCode::memory) where that is GL_OUT_OF_MEMORY; the context is abandoned then.
+    /// Throws Error(ErrorKind::effect) if GL has reported an error (KHR_debug, or glGetError) since the last
+    /// call, and Error(ErrorKind::memory) where that is GL_OUT_OF_MEMORY; the context is abandoned then.
     /// `what` names the pass or the operation, for the message.
     void check(std::string_view what);
 

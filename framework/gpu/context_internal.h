@@ -27,7 +27,7 @@ struct Limits {
 };
 
 struct Context::Impl {
-    /// Throws Error(ExitCode::gl) whose message is the reason alone; else current in this thread.
+    /// Throws Error(ErrorKind::gl) whose message is the reason alone; else current in this thread.
     explicit Impl(Backend backend);
     explicit Impl(const SharedEglContext& shared);
     explicit Impl(const Impl& other, std::unique_ptr<Platform> made);

@@ -37,7 +37,7 @@ class Refusal : public Error {
 public:
     /// `other` is a backend that works in place of those refused, so that nothing need be installed.
     Refusal(std::vector<Reason> reasons, std::optional<Backend> other)
-        : Error(ExitCode::gl, text(reasons, other)), reasons_(std::move(reasons)) {}
+        : Error(ErrorKind::gl, text(reasons, other)), reasons_(std::move(reasons)) {}
     const Reason& last() const { return reasons_.back(); }
 
 private:
@@ -127,7 +127,7 @@ Context::Context(Backend backend, SelfTest when) {
             return;
         } catch (const Error& error) {
             impl_.reset();
-            if (error.exit_code() == ExitCode::memory) throw;
+            if (error.kind() == ErrorKind::memory) throw;
             const auto* absent = dynamic_cast<const AbsentLibrary*>(&error);
             reasons.push_back({candidate, error.what(), absent ? absent->advice() : ""});
         }

@@ -44,7 +44,7 @@ struct EglApi {
 template <typename Function>
 void load(Function& function, const char* name) {
     void* address = dlsym(egl_library(), name);
-    if (!address) throw Error(ExitCode::gl, fmt::format("libEGL.so.1 has no {}; EGL 1.5 is needed", name));
+    if (!address) throw Error(ErrorKind::gl, fmt::format("libEGL.so.1 has no {}; EGL 1.5 is needed", name));
     function = reinterpret_cast<Function>(address);
 }
 
@@ -141,7 +141,7 @@ public:
         if (!egl_.query_context(display_, shared.context, EGL_CONTEXT_CLIENT_TYPE, &client))
             fail("eglQueryContext of the shared context");
         if (client != EGL_OPENGL_API)
-            throw Error(ExitCode::gl, "the shared context is not of desktop OpenGL");
+            throw Error(ErrorKind::gl, "the shared context is not of desktop OpenGL");
         open_context(shared.context);
     }
 
@@ -177,7 +177,7 @@ private:
 
     void open_context(EGLContext shared) {
         if (!has_extension(egl_.query_string(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
-            throw Error(ExitCode::gl, fmt::format("{}: no EGL_KHR_surfaceless_context", name_));
+            throw Error(ErrorKind::gl, fmt::format("{}: no EGL_KHR_surfaceless_context", name_));
         }
         if (!egl_.bind_api(EGL_OPENGL_API)) fail("eglBindAPI(EGL_OPENGL_API)");
         // What an untrusted shader reads outside its buffers is then defined, where the driver offers that.
@@ -206,7 +206,7 @@ private:
         if (force_software) variable.emplace("LIBGL_ALWAYS_SOFTWARE", "1");
         if (egl_.initialize(display_, nullptr, nullptr)) return;
         throw Error(
-            ExitCode::gl,
+            ErrorKind::gl,
             fmt::format("{}: eglInitialize failed ({}): the driver does not load or may not open its device; "
                         "EGL_LOG_LEVEL=debug makes it say why",
                         name_, error_name(egl_.get_error())));
@@ -221,12 +221,12 @@ private:
         EGLConfig result = nullptr;
         EGLint count = 0;
         if (!egl_.choose_config(display_, attributes, &result, 1, &count)) fail("eglChooseConfig");
-        if (count == 0) throw Error(ExitCode::gl, fmt::format("{}: no config for OpenGL", name_));
+        if (count == 0) throw Error(ErrorKind::gl, fmt::format("{}: no config for OpenGL", name_));
         return result;
     }
 
     [[noreturn]] void fail(std::string_view call) const {
-        throw Error(ExitCode::gl,
+        throw Error(ErrorKind::gl,
                     fmt::format("{}: {} failed ({})", name_, call, error_name(egl_.get_error())));
     }
 
@@ -271,19 +271,19 @@ std::unique_ptr<Platform> open_candidate(const EglApi& egl, const Candidate& can
     }
     if (refusal.empty()) return platform;
     platform->release();
-    throw Error(ExitCode::gl, fmt::format("{}: {}", candidate.name, refusal));
+    throw Error(ErrorKind::gl, fmt::format("{}: {}", candidate.name, refusal));
 }
 
 }  // namespace
 
 std::unique_ptr<Platform> make_egl_platform(const SharedEglContext& shared) {
     if (!shared.display || !shared.context)
-        throw Error(ExitCode::usage, "the shared EGL display and context may not be null");
+        throw Error(ErrorKind::usage, "the shared EGL display and context may not be null");
     auto platform = std::make_unique<EglPlatform>(load_egl(), shared);
     platform->make_current();
     if (!gl_string(*platform, kGlVersion).empty()) return platform;
     platform->release();
-    throw Error(ExitCode::gl, "eglMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
+    throw Error(ErrorKind::gl, "eglMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
 }
 
 std::unique_ptr<Platform> make_egl_platform(Renderer kind) {
@@ -304,8 +304,8 @@ std::unique_ptr<Platform> make_egl_platform(Renderer kind) {
             reasons += (reasons.empty() ? "" : "; ") + std::string(error.what());
         }
     }
-    if (!reasons.empty()) throw Error(ExitCode::gl, reasons);
-    throw Error(ExitCode::gl,
+    if (!reasons.empty()) throw Error(ErrorKind::gl, reasons);
+    throw Error(ErrorKind::gl,
                 kind == Renderer::hardware
                     ? "EGL lists no hardware device"
                     : "EGL lists no software device: it finds no Mesa among its vendors (Debian "

@@ -10,7 +10,7 @@ namespace aftershade::gpu {
 enum class Renderer { hardware, software };
 
 /// Tries every EGL device of the kind asked for; a renderer of the other kind is refused.
-/// Throws Error(ExitCode::gl) whose message is the reason alone.
+/// Throws Error(ErrorKind::gl) whose message is the reason alone.
 std::unique_ptr<Platform> make_egl_platform(Renderer kind);
 /// A context that shares objects with the caller's, of whichever renderer. Throws likewise.
 std::unique_ptr<Platform> make_egl_platform(const SharedEglContext& shared);

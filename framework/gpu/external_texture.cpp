@@ -49,7 +49,7 @@ void check_external_texture(Context& context, const ExternalTexture& texture, in
     context.make_current();
     const GladGLContext& gl = context.gl();
     const auto fail = [&](const std::string& why) {
-        throw Error(ExitCode::usage, fmt::format("{}: texture {} {}", label, texture.name, why));
+        throw Error(ErrorKind::usage, fmt::format("{}: texture {} {}", label, texture.name, why));
     };
     if (texture.name == 0 || !gl.IsTexture(texture.name)) fail("is not a texture of the shared context");
     GLint kind = 0;
@@ -92,7 +92,7 @@ void wait_for_fence(Context& context, void* fence) {
     const GladGLContext& gl = context.gl();
     const auto sync = static_cast<GLsync>(fence);
     if (!gl.IsSync(sync))
-        throw Error(ExitCode::usage, "wait: this is not a fence (GLsync) of the shared context");
+        throw Error(ErrorKind::usage, "wait: this is not a fence (GLsync) of the shared context");
     gl.WaitSync(sync, 0, GL_TIMEOUT_IGNORED);
     context.check("waiting for a fence");
 }

@@ -17,7 +17,7 @@ struct ExternalTexture {
     bool bottom_up = false;  ///< texel row 0 is the image's bottom row
 };
 
-/// Throws Error(ExitCode::usage), beginning with `label`, where there is no such texture of this size, or
+/// Throws Error(ErrorKind::usage), beginning with `label`, where there is no such texture of this size, or
 /// where its format cannot hold `channels` floats (or unsigned integers), of which three need four. [the
 /// context's thread, as all below]
 void check_external_texture(Context& context, const ExternalTexture& texture, int channels, bool is_integer,
@@ -28,7 +28,7 @@ void copy_texture(Context& context, const ExternalTexture& from, const Texture& 
 void copy_texture(Context& context, const Texture& from, const ExternalTexture& to);
 
 /// Lets the commands that follow wait, on the GPU, for a fence (GLsync) of another context. Throws
-/// Error(ExitCode::usage) where it is none.
+/// Error(ErrorKind::usage) where it is none.
 void wait_for_fence(Context& context, void* fence);
 /// A fence behind all commands so far, flushed; the caller deletes it.
 void* insert_fence(Context& context);

@@ -26,7 +26,7 @@ bool is_forked_from_gl() noexcept {
 void require_not_forked() {
     if (is_forked)
         throw Error(
-            ExitCode::usage,
+            ErrorKind::usage,
             "this process was forked from one that had an OpenGL context, and OpenGL's threads are not "
             "in a forked process; start a new program instead (in Python: "
             "multiprocessing.get_context(\"spawn\")), or fork before the first render");

@@ -13,7 +13,7 @@ void watch_for_forks() noexcept;
 /// Whether this process was forked, directly or not, from one that had made a context. [any thread]
 bool is_forked_from_gl() noexcept;
 
-/// Throws Error(ExitCode::usage) where is_forked_from_gl().
+/// Throws Error(ErrorKind::usage) where is_forked_from_gl().
 void require_not_forked();
 
 /// Never destroys `owner`'s object: in a forked child its destructor would wait for threads that are not

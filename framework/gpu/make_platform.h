@@ -7,7 +7,7 @@
 
 namespace aftershade::gpu {
 
-/// Throws Error(ExitCode::gl) whose message is the reason alone.
+/// Throws Error(ErrorKind::gl) whose message is the reason alone.
 std::unique_ptr<Platform> make_platform(Backend backend);
 
 }  // namespace aftershade::gpu

@@ -87,7 +87,7 @@ unsigned int ObjectCache::framebuffer(std::span<const Attachment> attachments) {
     const GLenum status = gl_.CheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE) {
         gl_.DeleteFramebuffers(1, &framebuffer);
-        throw Error(ExitCode::effect,
+        throw Error(ErrorKind::effect,
                     fmt::format("the targets form no framebuffer ({})", status_name(status)));
     }
     framebuffers_.emplace(key_, framebuffer);

@@ -45,7 +45,7 @@ public:
     unsigned int sampler(Filter filter, Wrap wrap, bool mips);
     /// A texture whose only level is `level` of `texture`, in the same memory.
     unsigned int level_view(const CachedTexture& texture, int level);
-    /// The framebuffer with these attachments. Throws Error(ExitCode::effect) with GL's status
+    /// The framebuffer with these attachments. Throws Error(ErrorKind::effect) with GL's status
     /// where it is incomplete.
     unsigned int framebuffer(std::span<const Attachment> attachments);
     /// Drops what refers to a texture that is about to die; GL may give its name to another.

@@ -43,7 +43,7 @@ template <typename Function>
 Function symbol(const char* name) {
     void* address = dlsym(osmesa_library(), name);
     if (!address)
-        throw Error(ExitCode::gl, std::string("libOSMesa has no ") + name + "; Mesa 12 or later is needed");
+        throw Error(ErrorKind::gl, std::string("libOSMesa has no ") + name + "; Mesa 12 or later is needed");
     return reinterpret_cast<Function>(address);
 }
 
@@ -74,7 +74,7 @@ public:
         const std::lock_guard lock(osmesa_mutex());
         context_ = create(attributes, nullptr);
         if (!context_)
-            throw Error(ExitCode::gl, "OSMesa makes no GL 4.5 core context; install Mesa 22 or later");
+            throw Error(ErrorKind::gl, "OSMesa makes no GL 4.5 core context; install Mesa 22 or later");
     }
 
     ~OsmesaPlatform() override {
@@ -85,7 +85,7 @@ public:
     void make_current() override {
         const std::lock_guard lock(osmesa_mutex());
         if (!make_current_(context_, buffer_.data(), kUnsignedByte, kBufferSide, kBufferSide)) {
-            throw Error(ExitCode::gl, "OSMesaMakeCurrent failed");
+            throw Error(ErrorKind::gl, "OSMesaMakeCurrent failed");
         }
     }
 
@@ -124,7 +124,7 @@ std::unique_ptr<Platform> make_osmesa_platform() {
     platform->make_current();
     if (gl_string(*platform, kGlVersion).empty()) {
         platform->release();
-        throw Error(ExitCode::gl, "OSMesaMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
+        throw Error(ErrorKind::gl, "OSMesaMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
     }
     return platform;
 }

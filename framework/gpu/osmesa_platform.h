@@ -7,9 +7,9 @@
 
 namespace aftershade::gpu {
 
-/// Throws Error(ExitCode::gl) whose message is the reason alone.
+/// Throws Error(ErrorKind::gl) whose message is the reason alone.
 std::unique_ptr<Platform> make_osmesa_platform();
-/// Throws Error(ExitCode::gl).
+/// Throws Error(ErrorKind::gl).
 void load_osmesa();
 
 }  // namespace aftershade::gpu

@@ -47,7 +47,7 @@ void* open_library(std::initializer_list<const char*> names, std::string_view pa
         const char* said = dlerror();
         const std::string message = said ? said : name;
         if (said && !is_absent(message, name))
-            throw Error(ExitCode::gl,
+            throw Error(ErrorKind::gl,
                         fmt::format("{} is there, but the loader refuses it: {}", name, message));
         if (absent.empty()) absent = message;
     }

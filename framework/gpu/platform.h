@@ -23,14 +23,14 @@ public:
     Platform(const Platform&) = delete;
     Platform& operator=(const Platform&) = delete;
 
-    /// Throws Error(ExitCode::gl).
+    /// Throws Error(ErrorKind::gl).
     virtual void make_current() = 0;
     /// Whether it is current in this thread still, whatever other code made current since.
     virtual bool is_current() const noexcept = 0;
     /// Leaves this thread without a context.
     virtual void release() noexcept = 0;
-    /// Another of the same library and renderer, with objects of its own or with this one's; current in this
-    /// thread once it is made. Throws Error(ExitCode::gl). [any thread]
+    /// Another of the same library and renderer, with objects of its own; current in this
+    /// thread once it is made. Throws Error(ErrorKind::gl). [any thread]
     virtual std::unique_ptr<Platform> sibling() const = 0;
     virtual Proc proc(const char* name) const = 0;
 };
@@ -42,7 +42,7 @@ bool is_software_renderer(std::string_view renderer);
 class AbsentLibrary : public Error {
 public:
     AbsentLibrary(const std::string& reason, std::string advice)
-        : Error(ExitCode::gl, reason), advice_(std::move(advice)) {}
+        : Error(ErrorKind::gl, reason), advice_(std::move(advice)) {}
     const std::string& advice() const { return advice_; }
 
 private:

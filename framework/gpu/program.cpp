@@ -131,7 +131,7 @@ bool knows_format(const GladGLContext& gl, GLenum format) {
 }  // namespace
 
 ShaderError::ShaderError(std::string stage, std::vector<ShaderMessage> messages, const std::string& log)
-    : Error(ExitCode::effect, log), stage_(std::move(stage)), messages_(std::move(messages)) {}
+    : Error(ErrorKind::effect, log), stage_(std::move(stage)), messages_(std::move(messages)) {}
 
 Program Program::draw(Context& context, const std::string& vertex, const std::string& fragment,
                       std::string label) {

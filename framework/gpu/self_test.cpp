@@ -64,7 +64,7 @@ void self_test(Context& context) {
     for (std::size_t i = 0; i < got.size(); ++i) {
         const int texel = int(i) / 4;
         if (got[i] == expected(texel % kWidth, texel / kWidth, int(i) % 4)) continue;
-        throw Error(ExitCode::gl,
+        throw Error(ErrorKind::gl,
                     fmt::format("self-test on {}: drew ({}) and the texel's place, read back ({})",
                                 context.info().renderer, fmt::join(kColour, ", "), fmt::join(got, ", ")));
     }

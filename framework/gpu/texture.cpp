@@ -79,20 +79,20 @@ GLenum value_type(const TextureDesc& desc) {
 
 void check_desc(const Limits& limits, const TextureDesc& desc, const std::string& label) {
     if (desc.width < 1 || desc.height < 1 || std::max(desc.width, desc.height) > limits.texture_size) {
-        throw Error(ExitCode::effect,
+        throw Error(ErrorKind::effect,
                     fmt::format("texture '{}': {}x{} texels; each side must be 1 to {} (GL_MAX_TEXTURE_SIZE)",
                                 label, desc.width, desc.height, limits.texture_size));
     }
     if (desc.layers < 1 || desc.layers > limits.array_layers) {
         throw Error(
-            ExitCode::effect,
+            ErrorKind::effect,
             fmt::format("texture '{}': {} layers; there must be 1 to {} (GL_MAX_ARRAY_TEXTURE_LAYERS)", label,
                         desc.layers, limits.array_layers));
     }
     const int most = std::bit_width(static_cast<unsigned>(std::max(desc.width, desc.height)));
     if (desc.mips < 1 || desc.mips > most) {
-        throw Error(ExitCode::effect, fmt::format("texture '{}': {} mip levels; {}x{} texels have 1 to {}",
-                                                  label, desc.mips, desc.width, desc.height, most));
+        throw Error(ErrorKind::effect, fmt::format("texture '{}': {} mip levels; {}x{} texels have 1 to {}",
+                                                   label, desc.mips, desc.width, desc.height, most));
     }
 }
 

@@ -34,7 +34,7 @@ std::uint64_t byte_size(const TextureDesc& desc);
 /// [the context's thread]
 class Texture {
 public:
-    /// Throws Error(ExitCode::effect) when GL has no memory for it or a side exceeds GL_MAX_TEXTURE_SIZE.
+    /// Throws Error(ErrorKind::effect) when GL has no memory for it or a side exceeds GL_MAX_TEXTURE_SIZE.
     Texture(Context& context, const TextureDesc& desc, std::string label);
     /// The memory of `other` under a format with as many bytes a texel (asserted): each reads as bits what
     /// the other wrote. GL keeps the memory as long as one of them lives.

@@ -28,7 +28,7 @@ struct PassTime {
 /// [the context's thread]
 class Executor {
 public:
-    /// Allocates every texture and buffer; histories begin as zero. Throws Error(ExitCode::effect) when GL
+    /// Allocates every texture and buffer; histories begin as zero. Throws Error(ErrorKind::effect) when GL
     /// has no memory for them, GraphError if a pass that is not culled lacks its program. Without
     /// `shares_memory` the last passes may run again over what the others made (run(), `range`).
     Executor(gpu::Context& context, FrameGraph graph, bool shares_memory = true);

@@ -14,13 +14,12 @@ namespace aftershade::host {
 /// `file` names what of the call is wrong: "bokeh.f_number", "HostOptions::data".
 [[noreturn]] void fail_at(ErrorKind kind, const std::string& file, const std::string& message);
 
-/// In the API's form. Words of the command line are named as the API names them.
-std::vector<Diagnostic> public_diagnostics(const Diagnostics& diagnostics);
+/// In the API's form.
+std::vector<Diagnostic> public_diagnostics(const std::vector<aftershade::Diagnostic>& faults);
 /// Throws Error where there is an error, with every warning too.
 void stop_at_errors(ErrorKind kind, const Diagnostics& diagnostics);
 
-/// Inside a catch block: throws what is being handled as an Error. Lines such as "coc.frag:6:17: error: ..."
-/// become diagnostics with a place.
+/// Inside a catch block: throws what is being handled as an Error.
 [[noreturn]] void rethrow();
 
 /// Does what needs no Host, so that its errors are of the API.

@@ -57,7 +57,7 @@ std::vector<EffectInfo> Host::effects(std::vector<Diagnostic>* faults) const {
             if (const EffectManifest* manifest = registry.find(id, found))
                 effects.push_back(info_of(*manifest));
         if (!faults) stop_at_errors(ErrorKind::document, found);
-        else *faults = public_diagnostics(found);
+        else *faults = public_diagnostics(found.all());
         return effects;
     });
 }

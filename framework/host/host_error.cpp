@@ -1,9 +1,6 @@
 #include "aftershade/error.h"
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
-#include <string_view>
 #include <utility>
 
 #include "framework/base/error.h"
@@ -22,67 +19,17 @@ struct Error::Data {
 
 namespace {
 
-std::optional<int> number_before(std::string_view& text) {
-    const std::size_t colon = text.rfind(':');
-    int number = 0;
-    if (colon == std::string_view::npos) return std::nullopt;
-    const char* const end = text.data() + text.size();
-    const auto [rest, failure] = std::from_chars(text.data() + colon + 1, end, number);
-    if (failure != std::errc{} || rest != end || number < 1) return std::nullopt;
-    text = text.substr(0, colon);
-    return number;
-}
-
-/// "coc.frag:6:17: error: 'parm' undeclared"; nullopt for a line that names no line of a file.
-std::optional<Diagnostic> diagnostic_of_line(std::string_view line) {
-    constexpr std::string_view kMark = ": error: ";
-    const std::size_t mark = line.find(kMark);
-    if (mark == std::string_view::npos) return std::nullopt;
-    std::string_view place = line.substr(0, mark);
-    Diagnostic diagnostic;
-    diagnostic.message = line.substr(mark + kMark.size());
-    const auto last = number_before(place);
-    const auto before = last ? number_before(place) : std::nullopt;
-    if (!last) return std::nullopt;
-    diagnostic.line = before ? *before : *last;
-    diagnostic.column = before ? *last : 0;
-    diagnostic.file = place;
-    return diagnostic;
-}
-
-std::vector<Diagnostic> diagnostics_of_text(const std::string& text) {
-    std::vector<Diagnostic> diagnostics;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string line = text.substr(begin, end - begin);
-        begin = end + 1;
-        if (auto diagnostic = diagnostic_of_line(line)) diagnostics.push_back(std::move(*diagnostic));
-        else if (diagnostics.empty()) diagnostics.push_back({Severity::error, line, "", 0, 0});
-        else diagnostics.back().message += "\n" + line;
-    }
-    return diagnostics;
-}
-
-ErrorKind kind_of(ExitCode code) {
-    switch (code) {
-        case ExitCode::usage: return ErrorKind::usage;
-        case ExitCode::capture: return ErrorKind::capture;
-        case ExitCode::gl: return ErrorKind::gl;
-        case ExitCode::output: return ErrorKind::output;
-        case ExitCode::memory: return ErrorKind::memory;
-        case ExitCode::interrupted: return ErrorKind::interrupted;
-        case ExitCode::effect:
-        case ExitCode::partial:
-        case ExitCode::done: break;
+ErrorKind kind_of(aftershade::ErrorKind kind) {
+    switch (kind) {
+        case aftershade::ErrorKind::usage: return ErrorKind::usage;
+        case aftershade::ErrorKind::capture: return ErrorKind::capture;
+        case aftershade::ErrorKind::gl: return ErrorKind::gl;
+        case aftershade::ErrorKind::effect: break;
+        case aftershade::ErrorKind::output: return ErrorKind::output;
+        case aftershade::ErrorKind::memory: return ErrorKind::memory;
+        case aftershade::ErrorKind::interrupted: return ErrorKind::interrupted;
     }
     return ErrorKind::effect;
-}
-
-/// What the command line calls "--tap x" or "-o x" is x here.
-std::string public_place(const std::string& place) {
-    for (const std::string_view option : {"--tap ", "--output-roles ", "--compression ", "-o ", "--set "})
-        if (place.starts_with(option)) return place.substr(option.size());
-    return place;
 }
 
 }  // namespace
@@ -160,18 +107,16 @@ void fail_at(ErrorKind kind, const std::string& file, const std::string& message
     throw Error(kind, {{Severity::error, message, file, 0, 0}});
 }
 
-std::vector<Diagnostic> public_diagnostics(const Diagnostics& diagnostics) {
+std::vector<Diagnostic> public_diagnostics(const std::vector<aftershade::Diagnostic>& faults) {
     std::vector<Diagnostic> result;
-    for (const aftershade::Diagnostic& diagnostic : diagnostics.all())
-        result.push_back(
-            {diagnostic.severity == aftershade::Severity::error ? Severity::error : Severity::warning,
-             diagnostic.message, public_place(diagnostic.place.file), diagnostic.place.line,
-             diagnostic.place.column});
+    for (const aftershade::Diagnostic& fault : faults)
+        result.push_back({fault.severity == aftershade::Severity::error ? Severity::error : Severity::warning,
+                          fault.message, fault.place.file, fault.place.line, fault.place.column});
     return result;
 }
 
 void stop_at_errors(ErrorKind kind, const Diagnostics& diagnostics) {
-    if (diagnostics.has_errors()) throw Error(kind, public_diagnostics(diagnostics));
+    if (diagnostics.has_errors()) throw Error(kind, public_diagnostics(diagnostics.all()));
 }
 
 void rethrow() {
@@ -181,7 +126,7 @@ void rethrow() {
         throw;
     } catch (const aftershade::Error& error) {
         if (is_out_of_memory(error)) throw Error(ErrorKind::memory, out_of_memory_text(error));
-        throw Error(kind_of(error.exit_code()), diagnostics_of_text(error.what()));
+        throw Error(kind_of(error.kind()), public_diagnostics(error.faults()));
     } catch (const std::exception& error) {
         if (is_out_of_memory(error)) throw Error(ErrorKind::memory, out_of_memory_text(error));
         throw Error(ErrorKind::effect,

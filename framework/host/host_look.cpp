@@ -36,7 +36,7 @@ std::shared_ptr<LookCore> load(Host::Data& host, const std::optional<Node>& docu
         core->pipeline = bind_pipeline(core->look, core->effects, {{}, options.taps}, faults);
     }
     stop_at_errors(ErrorKind::document, faults);
-    core->warnings = public_diagnostics(faults);
+    core->warnings = public_diagnostics(faults.all());
     core->documents = std::make_shared<const std::vector<fs::path>>(faults.documents());
     return core;
 }

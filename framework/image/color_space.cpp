@@ -50,7 +50,7 @@ ColorMatrix inverse(const ColorMatrix& m) {
     };
     const double determinant = m[0] * cofactor(0, 0) + m[1] * cofactor(0, 1) + m[2] * cofactor(0, 2);
     if (std::abs(determinant) < 1e-9)
-        throw Error(ExitCode::capture, "chromaticities: the primaries lie on one line");
+        throw Error(ErrorKind::capture, "chromaticities: the primaries lie on one line");
     ColorMatrix result{};
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
@@ -59,7 +59,7 @@ ColorMatrix inverse(const ColorMatrix& m) {
 }
 
 Vector xyz_of_xy(double x, double y) {
-    if (y == 0) throw Error(ExitCode::capture, "chromaticities: the white has y = 0");
+    if (y == 0) throw Error(ErrorKind::capture, "chromaticities: the white has y = 0");
     return {x / y, 1, (1 - x - y) / y};
 }
 

@@ -33,7 +33,7 @@ std::string name_of_primaries(const Chromaticities& primaries);
 bool is_xyz(const Chromaticities& primaries);
 
 /// From light in one space to the same light in another. Whites that differ are adapted by Bradford's method
-/// (ICC v4, annex E). Throws Error(ExitCode::capture) for primaries that span no space.
+/// (ICC v4, annex E). Throws Error(ErrorKind::capture) for primaries that span no space.
 ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& to);
 
 /// Applies the matrix to the first three channels.

@@ -17,7 +17,7 @@ struct SampleCount {
 };
 
 /// Of a deep part: 0, 1, 2, 3 to 4, 5 to 8, ... samples, as far as there are any. Reads counts alone. Throws
-/// Error(ExitCode::capture).
+/// Error(ErrorKind::capture).
 std::vector<SampleCount> sample_histogram(const ExrFile& file, int part);
 
 /// The stored values of a part at one pixel: a list for each sample, of flat parts one. Empty outside of the
@@ -27,7 +27,7 @@ struct PixelSamples {
     std::vector<std::vector<double>> samples;
 };
 
-/// `x` and `y` in the file's coordinates. Throws Error(ExitCode::capture).
+/// `x` and `y` in the file's coordinates. Throws Error(ErrorKind::capture).
 PixelSamples samples_at(const ExrFile& file, int part, int x, int y);
 
 }  // namespace aftershade

@@ -62,12 +62,12 @@ void require_image(const Image* image, const Image& reference, int channels, con
     if (!image) return;
     if (image->width() != reference.width() || image->height() != reference.height())
         throw Error(
-            ExitCode::capture,
+            ErrorKind::capture,
             fmt::format("{} is {}x{}, but the colour of frame A is {}x{}: both frames of a velocity "
                         "check must have one size",
                         what, image->width(), image->height(), reference.width(), reference.height()));
     if (image->type() != ComponentType::float32 || image->channels() < channels)
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     fmt::format("{} has {} channels, but a velocity check needs {} of floats", what,
                                 image->channels(), channels));
 }

@@ -17,7 +17,7 @@ struct VelocityCheckInput {
 };
 
 /// NaN and infinite vectors and those longer than the diagonal count as none; NaN colours are left out. The
-/// same input gives the same bits. Throws Error(ExitCode::capture) for images of different sizes and for
+/// same input gives the same bits. Throws Error(ErrorKind::capture) for images of different sizes and for
 /// missing channels. [thread-safe]
 VelocityCheck check_velocity(const VelocityCheckInput& input);
 

@@ -41,7 +41,7 @@ const Image* on_display(Capture& capture, const std::string& role) {
 const Image* color_on_display(Capture& capture, const char* name) {
     const Image* const color = on_display(capture, kColorRole);
     const std::string path = capture.header.path.string();
-    if (!color) throw Error(ExitCode::capture, (path.empty() ? name : path) + ": has no color to compare");
+    if (!color) throw Error(ErrorKind::capture, (path.empty() ? name : path) + ": has no color to compare");
     return color;
 }
 

@@ -21,7 +21,7 @@ std::vector<std::string> velocity_check_roles();
 
 /// Frame `a` comes just before `b`. The claim of a role without a decoding is what docs/conventions.md says
 /// of it. Frames of a moving camera may have data windows of their own; both are brought onto the display
-/// window. Empty where neither frame has motion. Throws Error(ExitCode::capture) where one has no color, or
+/// window. Empty where neither frame has motion. Throws Error(ErrorKind::capture) where one has no color, or
 /// where the sizes differ. [thread-safe]
 std::vector<RoleVelocityCheck> check_velocity_of_frames(Capture a, Capture b,
                                                         const std::map<std::string, RoleDecoding>& decodings);

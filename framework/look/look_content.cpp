@@ -19,7 +19,7 @@ namespace {
 /// The name too, but not where it lies: another checkout gives the same hash.
 void add_file(const fs::path& file, std::string& text) {
     constexpr std::uintmax_t kMaxBytes = 1u << 30;  // of a table of colours, the largest of them
-    text += "\n" + file.filename().string() + "\n" + read_text_file(file, ExitCode::usage, kMaxBytes);
+    text += "\n" + file.filename().string() + "\n" + read_text_file(file, ErrorKind::usage, kMaxBytes);
 }
 
 /// The code of a native effect, without its tests.
@@ -35,7 +35,7 @@ void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<f
     if (depth >= kMaxIncludeDepth || !files.insert(file.lexically_normal()).second) return;
     std::string fault;
     std::istringstream lines(read_regular_file(file, kMaxShaderFileBytes, fault));
-    if (!fault.empty()) throw Error(ExitCode::usage, file.string() + ": " + fault);
+    if (!fault.empty()) throw Error(ErrorKind::usage, file.string() + ": " + fault);
     for (std::string line; std::getline(lines, line);) {
         const auto include = parse_include(line);
         if (!include || include->name == "pass" || include->name == "predicate") continue;

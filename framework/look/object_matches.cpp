@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
@@ -236,7 +237,7 @@ void ObjectMatches::look_at(const Capture& capture) {
 Error ObjectMatches::placed(const UnknownObject& error) const {
     for (const Entry& entry : entries_)
         if (std::ranges::find(entry.keys, error.object(), &TableKey::name) != entry.keys.end())
-            return Error(error.exit_code(), entry.user + ": " + error.what());
+            return Error(error.kind(), entry.user + ": " + error.what());
     return error;
 }
 
@@ -290,13 +291,14 @@ std::vector<std::string> ObjectMatches::unmatched() const {
             if (entries_[i].state == State::missed)
                 keys.insert(keys.end(), entries_[i].keys.begin(), entries_[i].keys.end());
         }
-        sentences.push_back(
-            first.user + ": " + list_of_objects(keys) + (keys.size() == 1 ? " has" : " have") +
-            " no pixel in any frame of this run (" +
-            (are_named(keys) ? "`aftershade inspect CAPTURE --cryptomatte` lists the names and, without a "
-                               "manifest, their hashes"
-                             : "`aftershade inspect CAPTURE --pixel X,Y` prints the id at a pixel") +
-            ids_text() + ")");
+        sentences.push_back(first.user + ": " + list_of_objects(keys) +
+                            (keys.size() == 1 ? " has" : " have") + " no pixel in any frame of this run (" +
+                            (are_named(keys)
+                                 ? advice("`aftershade inspect CAPTURE ", Option::cryptomatte, "",
+                                          "` lists the names and, without a manifest, their hashes")
+                                 : advice("`aftershade inspect CAPTURE ", Option::pixel, "X,Y",
+                                          "` prints the id at a pixel")) +
+                            ids_text() + ")");
     }
     return sentences;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/capture/channel_names.h"
 #include "framework/document/param_type.h"
@@ -223,15 +224,16 @@ std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline) {
 
 namespace {
 
-/// "--profile blender or vray finds it; --layer 'B' has it; --role depth=FILE reads it from a file of its
+/// "profile blender or vray finds it; layer 'B' has it; role depth=FILE reads it from a file of its
 /// own; ..."
 std::string remedies(const std::string& role, const CaptureHeader& header, const CaptureReader* reader) {
     std::string text;
     if (reader) {
         const RoleElsewhere found = reader->find_elsewhere(header, role);
-        if (!found.profiles.empty()) text += "--profile " + joined(found.profiles, " or ") + " finds it; ";
+        if (!found.profiles.empty())
+            text += spelled(Option::profile) + " " + joined(found.profiles, " or ") + " finds it; ";
         if (!found.layers.empty())
-            text += "--layer " + list_of_names(found.layers) +
+            text += spelled(Option::layer) + " " + list_of_names(found.layers) +
                     (found.layers.size() == 1 ? " has it; " : " have it; ");
     }
     if (const auto half = header.half_there.find(role); half != header.half_there.end())
@@ -241,14 +243,14 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
             text += list_of_names(motion, "and") + (motion.size() == 1 ? " looks" : " look") +
                     " like motion, whose unit, direction and sign no name says, so it is read only as "
                     "declared; ";
-    return text + "--role " + role + "=FILE reads it from a file of its own; \"channels\": {\"" + role +
-           "\": {\"channels\": [...]}} in capture.json names its channels";
+    return text + advice("", Option::role, role + "=FILE", " reads it from a file of its own; ") +
+           "\"channels\": {\"" + role + "\": {\"channels\": [...]}} in capture.json names its channels";
 }
 
 }  // namespace
 
 Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader) {
-    return Error(ExitCode::capture,
+    return Error(ErrorKind::capture,
                  header.path.string() + ": " + missing.who + " needs the role '" + missing.role +
                      (missing.instead.empty() ? "" : "' or '" + missing.instead) + "', which the profile '" +
                      header.profile + "' does not find among the channels " + list_channels(header.channels) +
@@ -291,9 +293,9 @@ namespace {
 /// A relation that the capture's or keyed values break; those of the look alone were checked before.
 void require_relations(const PipelineStep& step, const ParamSet& params, const FrameInputs& frame) {
     for (const RelationFault& fault : check_relations(step.manifest->params, params))
-        throw Error(ExitCode::capture, frame.capture->header.path.string() + ": " +
-                                           relation_message(step.name, fault) +
-                                           " (set both in the look, or correct the capture's camera)");
+        throw Error(ErrorKind::capture, frame.capture->header.path.string() + ": " +
+                                            relation_message(step.name, fault) +
+                                            " (set both in the look, or correct the capture's camera)");
 }
 
 }  // namespace

@@ -31,14 +31,14 @@ struct InputSource {
     bool operator==(const InputSource&) const = default;
 };
 
-/// One use of an effect. Values are, from the most to the least binding: --set, look, preset; below them come
-/// the capture and the manifest.
+/// One use of an effect. Values are, from the most to the least binding: set by the caller, look, preset;
+/// below them come the capture and the manifest.
 struct PipelineStep {
     std::string name;
     const EffectManifest* manifest = nullptr;
     std::map<std::string, InputSource> inputs;   ///< by input name
     std::map<std::string, ValueSource> values;   ///< asked for by the user; paths of files are complete
-    std::map<std::string, std::string> origins;  ///< of each of `values`: "--set", "the look", "preset fast"
+    std::map<std::string, std::string> origins;  ///< of each of `values`: "the look", "preset fast"
     std::map<std::string, Place> places;         ///< of each of `values`
     ValueSource mix = ParamValue(1.0);
     std::optional<MaskSpec> mask;
@@ -113,7 +113,7 @@ struct ValueOverride {
     Node value;
 };
 
-/// One "--set step.param=value" or "--tap step.texture", as given.
+/// One step.param=value or step.texture, as given.
 struct PipelineOptions {
     std::vector<std::string> sets;
     std::vector<std::string> taps;
@@ -152,7 +152,7 @@ struct StaleLayers {
 };
 std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline);
 
-/// Throws Error(ExitCode::capture) if the capture lacks a role that a step requires, naming the effect, the
+/// Throws Error(ErrorKind::capture) if the capture lacks a role that a step requires, naming the effect, the
 /// role, the channels that the file does have, and what would give the role: other profiles and layers, found
 /// by the reader that the header comes from, where it is given.
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
@@ -167,8 +167,8 @@ struct ResolvedValue {
 ResolvedValue resolve_param(const PipelineStep& step, const ParamSpec& spec, const FrameInputs& frame);
 
 /// Every parameter of the step: the user's value, else the capture's (the manifest's "from"), else the
-/// default; values in px times frame.scale. Throws Error(ExitCode::capture) where the capture's values do not
-/// fit.
+/// default; values in px times frame.scale. Throws Error(ErrorKind::capture) where the capture's values do
+/// not fit.
 ParamSet resolve_params(const PipelineStep& step, const FrameInputs& frame);
 
 /// One line per parameter of every step: its value, its unit, and where the value is from.

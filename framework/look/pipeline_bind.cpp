@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "framework/base/option.h"
 #include "framework/document/units.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
@@ -40,7 +41,7 @@ public:
     }
 
     void apply_set(const std::string& text) {
-        const Place place{"--set " + text};
+        const Place place = option_place(Option::set, text);
         const std::size_t equals = text.find('=');
         const std::size_t dot = text.find('.');
         if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
@@ -50,7 +51,7 @@ public:
             return;
         }
         apply(text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
-              parse_command_value(text.substr(equals + 1), place), "--set");
+              parse_command_value(text.substr(equals + 1), place), spelled(Option::set));
     }
 
     void apply_override(const ValueOverride& value) {
@@ -62,7 +63,7 @@ public:
     }
 
     void add_tap(const std::string& text) {
-        const Place place{"--tap " + text};
+        const Place place = option_place(Option::tap, text);
         const std::size_t dot = text.find('.');
         if (dot == std::string::npos) {
             diagnostics_.error(place,
@@ -135,7 +136,8 @@ private:
             diagnostics_.error(
                 look_step.effect_place,
                 "no effect '" + look_step.effect + "'" +
-                    did_you_mean(look_step.effect, ids, "; --effect-path names a folder of further effects"));
+                    did_you_mean(look_step.effect, ids,
+                                 "; " + spelled(Option::effect_path) + " names a folder of further effects"));
             return std::nullopt;
         }
         PipelineStep step;

@@ -125,14 +125,14 @@ struct SourceReader {
 };
 
 [[noreturn]] void refuse(const std::string& label, const CaptureHeader& header, const std::string& why) {
-    throw Error(ExitCode::capture, header.path.string() + ": " + label + ": " + why);
+    throw Error(ErrorKind::capture, header.path.string() + ": " + label + ": " + why);
 }
 
 /// A number of the capture as a value of the parameter, which it must fit.
 ParamValue fitted(double number, const ParamSpec& spec, const std::string& label, const std::string& origin,
                   const CaptureHeader& header) {
     if (!(number >= spec.min.value_or(number)) || !(number <= spec.max.value_or(number)))
-        throw Error(ExitCode::capture,
+        throw Error(ErrorKind::capture,
                     header.path.string() + ": " + origin + " is " + format_number(number) +
                         ", outside the range of " + label +
                         " (set the parameter in the look, or correct the capture's camera)");
@@ -226,7 +226,7 @@ std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string&
         const std::string& name = header.camera.lens_model;
         if (name.empty()) return std::nullopt;
         if (std::find(spec.values.begin(), spec.values.end(), name) == spec.values.end())
-            throw Error(ExitCode::capture,
+            throw Error(ErrorKind::capture,
                         header.path.string() + ": camera." + field + " is '" + name +
                             "', outside the range of " + label +
                             " (set the parameter in the look, or correct the capture's camera)");

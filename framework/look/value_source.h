@@ -45,13 +45,13 @@ std::string format_source(const ValueSource& source);
 /// Roles that the value is taken from: depth, object_id.
 std::vector<std::string> roles_of(const ValueSource& source);
 
-/// The value for one frame. Throws Error(ExitCode::capture) naming `label` where the capture lacks what it is
-/// taken from or gives a value outside the range of `spec`.
+/// The value for one frame. Throws Error(ErrorKind::capture) naming `label` where the capture lacks what it
+/// is taken from or gives a value outside the range of `spec`.
 ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std::string& label,
                     const Capture& capture);
 
 /// The camera's value for a parameter in the parameter's unit; nullopt where it is not known. Throws
-/// Error(ExitCode::capture) for one outside the range of `spec`.
+/// Error(ErrorKind::capture) for one outside the range of `spec`.
 std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string& field,
                                        const std::string& label, const CaptureHeader& header);
 

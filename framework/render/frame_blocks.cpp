@@ -140,11 +140,11 @@ LightsBlock lights_block(const FrameInputs& frame, const std::string& step) {
     const CaptureHeader& header = frame.capture->header;
     LightsBlock block;
     if (header.lights.size() > kMaxShaderLights)
-        throw Error(ExitCode::capture, header.path.string() + ": step '" + step +
-                                           "' uses the capture's lights, of which there are " +
-                                           std::to_string(header.lights.size()) + "; effects take " +
-                                           std::to_string(kMaxShaderLights) +
-                                           ". Name those that count in \"lights\" of capture.json");
+        throw Error(ErrorKind::capture, header.path.string() + ": step '" + step +
+                                            "' uses the capture's lights, of which there are " +
+                                            std::to_string(header.lights.size()) + "; effects take " +
+                                            std::to_string(kMaxShaderLights) +
+                                            ". Name those that count in \"lights\" of capture.json");
     block.count = std::int32_t(header.lights.size());
     for (std::size_t i = 0; i < header.lights.size(); ++i) {
         const CaptureLight& light = header.lights[i];

@@ -30,12 +30,12 @@ FrameBlock frame_block(const FrameInputs& frame, const StepGrid& grid, const std
 /// The block `camera`; `before` gives the prev_ matrices, unless the capture before is at hand.
 CameraBlock camera_block(const FrameInputs& frame, const StepGrid& grid, const FrameBefore& before);
 
-/// The block `lights` of a step that uses it. Throws Error(ExitCode::capture) where the capture has more than
-/// kMaxShaderLights.
+/// The block `lights` of a step that uses it. Throws Error(ErrorKind::capture) where the capture has more
+/// than kMaxShaderLights.
 LightsBlock lights_block(const FrameInputs& frame, const std::string& step);
 
-/// The block of a step's "mix" and "mask" (glsl/host/mix.frag). Throws Error(ExitCode::capture) where the mix
-/// comes from the capture and does not fit.
+/// The block of a step's "mix" and "mask" (glsl/host/mix.frag). Throws Error(ErrorKind::capture) where the
+/// mix comes from the capture and does not fit.
 std::vector<std::byte> mix_block(const PipelineStep& step, const StepGrid& grid, const FrameInputs& frame);
 inline constexpr std::size_t kMixBlockBytes = 32 + 16 * kMaxMaskObjects;
 inline constexpr int kMixBinding = 0;

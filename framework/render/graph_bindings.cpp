@@ -25,8 +25,8 @@ std::vector<float> widened(const Image& image, int stored_channels) {
 void upload(const Image& image, gpu::Texture& texture) {
     const int stored = gpu::channel_count(texture.desc().format);
     if (image.channels() > stored)
-        throw Error(ExitCode::effect, fmt::format("{}: an image of {} channels, its role has {}",
-                                                  texture.label(), image.channels(), stored));
+        throw Error(ErrorKind::effect, fmt::format("{}: an image of {} channels, its role has {}",
+                                                   texture.label(), image.channels(), stored));
     if (image.type() == ComponentType::uint32) texture.upload(image.uints());
     else if (image.channels() < stored) texture.upload(widened(image, stored));
     else texture.upload(image.floats());

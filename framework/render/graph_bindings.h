@@ -78,8 +78,8 @@ struct GraphFeed {
 };
 
 /// Puts the frame's content into what is bound; textures and buffers of files, curves and tables only where
-/// it changed. Throws Error(ExitCode::effect) for an image that does not fit its role,
-/// Error(ExitCode::capture) for lights and mixes that the capture does not give.
+/// it changed. Throws Error(ErrorKind::effect) for an image that does not fit its role,
+/// Error(ErrorKind::capture) for lights and mixes that the capture does not give.
 void give(GraphBinding& binding, const GraphFeed& feed, graph::Executor& executor);
 
 }  // namespace aftershade

@@ -135,8 +135,8 @@ void GraphBuilder::add_step(int index) {
         if (pass_enabled(pass, build.params, build.present)) add_pass(build, pass);
     for (const OutputSpec& output : step.manifest->outputs)
         if (build.textures.at(output.name).version == 0)
-            throw Error(ExitCode::effect, "step '" + step.name + "': no pass writes the output '" +
-                                              output.name + "' with these parameters");
+            throw Error(ErrorKind::effect, "step '" + step.name + "': no pass writes the output '" +
+                                               output.name + "' with these parameters");
     keep_histories(build);
     if (!step.before.empty()) add_mix(build);
     for (const OutputSpec& output : step.manifest->outputs)
@@ -175,8 +175,8 @@ void GraphBuilder::require_written(const StepBuild& build, const InputSpec& inpu
                                    graph::TextureHandle handle) const {
     const auto& texture = graph_.textures()[std::size_t(handle.texture)];
     if (handle.version > 0 || texture.imported || texture.options.clear) return;
-    throw Error(ExitCode::effect, "step '" + build.step.name + "': its input '" + input.name + "' is '" +
-                                      texture.name + "', which no pass writes with these parameters");
+    throw Error(ErrorKind::effect, "step '" + build.step.name + "': its input '" + input.name + "' is '" +
+                                       texture.name + "', which no pass writes with these parameters");
 }
 
 int GraphBuilder::input_level(graph::TextureHandle handle) const {

@@ -35,8 +35,8 @@ struct GraphTools {
     bool primes = false;             ///< what the first draws compile is made before them
 };
 
-/// Throws Error(ExitCode::effect) where a pass reads, or a step outputs, what no pass has written with these
-/// parameters; Error(ExitCode::usage) for a tap that no pass writes, and for files.
+/// Throws Error(ErrorKind::effect) where a pass reads, or a step outputs, what no pass has written with these
+/// parameters; Error(ErrorKind::usage) for a tap that no pass writes, and for files.
 std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFrame& frame);
 
 struct StepBuild;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/effect/std140.h"
 #include "framework/image/role.h"
 #include "framework/render/graph_builder.h"
@@ -85,8 +86,8 @@ void GraphBuilder::keep_taps() {
             if (pipeline_.steps[i].name != tap.step) continue;
             graph::TextureHandle handle = built_->textures[i].at(tap.texture);
             if (handle.version == 0)
-                throw Error(ExitCode::usage,
-                            "--tap " + tap.text() + ": no pass writes it with these parameters");
+                throw Error(ErrorKind::usage, spelled(Option::tap) + " " + tap.text() +
+                                                  ": no pass writes it with these parameters");
             handle = on_grid(handle, {int(i), tap.texture});
             graph_.keep(built_->taps[tap.text()] = handle);
         }

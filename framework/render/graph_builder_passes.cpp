@@ -29,8 +29,8 @@ std::array<float, 4> size_of(const gpu::TextureDesc& desc, int level) {
 }
 
 [[noreturn]] void unwritten(const StepBuild& build, const PassSpec& spec, const std::string& name) {
-    throw Error(ExitCode::effect, "step '" + build.step.name + "': pass '" + spec.name + "' reads '" + name +
-                                      "', which no pass has written with these parameters");
+    throw Error(ErrorKind::effect, "step '" + build.step.name + "': pass '" + spec.name + "' reads '" + name +
+                                       "', which no pass has written with these parameters");
 }
 
 /// Texels of a level of a texture or an output per px of the working grid, along a side.

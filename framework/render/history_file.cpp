@@ -10,6 +10,7 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 
 namespace aftershade {
@@ -213,14 +214,14 @@ void write_history(const fs::path& path, const SavedHistory& history) {
     out.write(reinterpret_cast<const char*>(&sum), sizeof sum);
     out.close();
     if (!out)
-        throw Error(ExitCode::output,
+        throw Error(ErrorKind::output,
                     path.string() + ": cannot be written: " + std::strerror(errno ? errno : EIO));
     file.commit();
 }
 
 SavedHistory read_history(const fs::path& path) {
     const auto refuse = [&](const std::string& why) {
-        return Error(ExitCode::usage, path.string() + ": " + why);
+        return Error(ErrorKind::usage, path.string() + ": " + why);
     };
     std::error_code failure;
     // A pipe would wait for a writer.
@@ -231,7 +232,7 @@ SavedHistory read_history(const fs::path& path) {
     if (failure || !in) throw refuse("this history cannot be read");
     std::string magic, head;
     std::getline(in, magic);
-    if (magic != kMagic) throw refuse("this is not a history file of --history-out");
+    if (magic != kMagic) throw refuse("this is not a history file of " + spelled(Option::history_out));
     std::getline(in, head);
     SavedHistory history;
     history.path = path;
@@ -240,9 +241,9 @@ SavedHistory read_history(const fs::path& path) {
         apply(document, history);
         const std::uint64_t sum = fnv1a(head);
         if (!read_resources(in, file_bytes, document, sum, history))
-            throw refuse("this history is damaged; write it again with --history-out");
+            throw refuse("this history is damaged; write it again with " + spelled(Option::history_out));
     } catch (const json::exception&) {
-        throw refuse("this history is damaged; write it again with --history-out");
+        throw refuse("this history is damaged; write it again with " + spelled(Option::history_out));
     }
     return history;
 }

@@ -43,9 +43,9 @@ std::string history_identity(const Pipeline& pipeline);
 /// The first line in which two identities differ, for messages.
 std::string difference_of_identities(const std::string& saved, const std::string& now);
 
-/// Throws Error(ExitCode::output). The file appears by rename.
+/// Throws Error(ErrorKind::output). The file appears by rename.
 void write_history(const std::filesystem::path& path, const SavedHistory& history);
-/// Throws Error(ExitCode::usage): no such file, none of ours, damaged.
+/// Throws Error(ErrorKind::usage): no such file, none of ours, damaged.
 SavedHistory read_history(const std::filesystem::path& path);
 
 /// "1920x1080 at (0, 0)".

@@ -25,8 +25,8 @@ class NativeSteps {
 public:
     explicit NativeSteps(NativeSources sources) : sources_(sources) {}
 
-    /// Calls each step's code with this frame. `params` are the steps'. Throws Error(ExitCode::effect) naming
-    /// step, library and frame.
+    /// Calls each step's code with this frame. `params` are the steps'. Throws Error(ErrorKind::effect)
+    /// naming step, library and frame.
     void prepare(const Pipeline& pipeline, const FrameInputs& frame, const std::vector<ParamSet>& params,
                  bool history_valid);
     /// Notifies every instance that history was dropped.

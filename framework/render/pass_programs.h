@@ -42,7 +42,7 @@ public:
     void add(int pass, const ShaderContext& shader, const PipelineStep& step);
     /// Gives the graph's passes their programs. Fused ones take the place of the last of theirs, and `blocks`
     /// point to them. `divide_at`: no pass from this index on joins one before it. Throws
-    /// Error(ExitCode::effect) for the faults of a shader.
+    /// Error(ErrorKind::effect) for the faults of a shader.
     void finish(graph::FrameGraph& graph, std::vector<BlockBinding>& blocks, int divide_at);
     /// After finish(): what still compiles for the first draws; nullptr where nothing does.
     std::unique_ptr<CompileAhead> take_ahead() { return std::move(ahead_); }

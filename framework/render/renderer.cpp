@@ -98,7 +98,7 @@ void require_room(const Pipeline& pipeline, const CaptureHeader& header, int mos
     const SquareSteps steps(pipeline, header.pixel_aspect);
     const Window window = stretched(header.data_window, header.display_window, steps.stretch());
     if (steps.stretch().is_none() || std::max(window.width(), window.height()) <= most_px) return;
-    throw Error(ExitCode::capture,
+    throw Error(ErrorKind::capture,
                 header.path.string() + ": " + steps.note(pipeline, header) +
                     ", and a side may have at most " + std::to_string(most_px) +
                     " with this renderer (correct pixelAspectRatio, or resample the frame to square pixels)");
@@ -131,7 +131,7 @@ void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<s
         build(frame, roles, true);
     } catch (const Error& error) {
         built_.reset();
-        if (error.exit_code() == ExitCode::memory) throw;
+        if (error.kind() == ErrorKind::memory) throw;
     }
 }
 
@@ -179,7 +179,7 @@ void PipelineRenderer::require_whole_loops(const std::string& pass) {
     const std::vector<std::byte> word = loop_guard_->read();
     if (std::ranges::all_of(word, [](std::byte byte) { return byte == std::byte{0}; })) return;
     loop_guard_->clear(0);
-    throw Error(ExitCode::effect,
+    throw Error(ErrorKind::effect,
                 "pass '" + pass +
                     "': llvmpipe ended its loops after 65,535 iterations, so the picture is wrong; end the "
                     "loops earlier, or split the work over a pass with \"repeat\"");

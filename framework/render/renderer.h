@@ -56,7 +56,7 @@ public:
 
     /// Builds the first frame's graph and has the driver make its programs, before the frame's pixels are
     /// known: images of `frame` are empty. What render() finds different then, it builds again, and what
-    /// fails here, fails there. Does nothing unless can_build_ahead(). Throws Error(ExitCode::memory).
+    /// fails here, fails there. Does nothing unless can_build_ahead(). Throws Error(ErrorKind::memory).
     void build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles);
     /// Whether there is no graph yet, and no step needs more than a frame's header: native code is called
     /// once a frame, and values may be measured in the pixels.
@@ -64,7 +64,7 @@ public:
     /// Renders one frame; of sub-frames, give each in turn. Steps up to the last one that accumulates run for
     /// each sub-frame; the others run once, with the last, over `frame.centre`. `roles` are read back where a
     /// step makes them; of sub-frames before the last the result is empty. Frames follow each other in
-    /// `frame.capture->header.frame`; anything else restarts history. Throws Error(ExitCode::effect).
+    /// `frame.capture->header.frame`; anything else restarts history. Throws Error(ErrorKind::effect).
     FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// The last call's frame once more, of which nothing changed but what the pipeline's values give: steps
     /// before the first that differs are not drawn again, if they are kept and no step has a history. The
@@ -88,9 +88,9 @@ public:
     void pipeline_changed() { is_stale_ = true; }
 
     /// What the next frame would read of this one (framework/render/history_file.h). Throws
-    /// Error(ExitCode::output).
+    /// Error(ErrorKind::output).
     void save_history(const std::filesystem::path& path, const std::string& fingerprint = "");
-    /// Takes up where a run over the frames before this one ended. Throws Error(ExitCode::usage) where the
+    /// Takes up where a run over the frames before this one ended. Throws Error(ErrorKind::usage) where the
     /// file is damaged or of another look, effect version, size or last frame: at once, or by render().
     void load_history(const std::filesystem::path& path);
     /// Of a history that was loaded for a frame that could not be read.

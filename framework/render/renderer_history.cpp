@@ -39,8 +39,8 @@ void PipelineRenderer::load_history(const std::filesystem::path& path) {
     saved_ = std::make_unique<SavedHistory>(read_history(path));
     const std::string identity = history_identity(pipeline_);
     if (saved_->look == identity) return;
-    throw Error(ExitCode::usage, path.string() + ": this history is of another look or effect version\n" +
-                                     difference_of_identities(saved_->look, identity));
+    throw Error(ErrorKind::usage, path.string() + ": this history is of another look or effect version\n" +
+                                      difference_of_identities(saved_->look, identity));
 }
 
 void PipelineRenderer::drop_loaded_history() {
@@ -51,14 +51,14 @@ void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
     const CaptureHeader& header = frame.capture->header;
     const std::string file = saved_->path.string();
     if (header.frame != saved_->frame + 1)
-        throw Error(ExitCode::usage, file + ": this history is of frame " + std::to_string(saved_->frame) +
-                                         "; it continues with frame " + std::to_string(saved_->frame + 1) +
-                                         ", not with " + std::to_string(header.frame));
+        throw Error(ErrorKind::usage, file + ": this history is of frame " + std::to_string(saved_->frame) +
+                                          "; it continues with frame " + std::to_string(saved_->frame + 1) +
+                                          ", not with " + std::to_string(header.frame));
     if (!(header.data_window == saved_->window))
-        throw Error(ExitCode::usage, file + ": this history is of another size: its window is " +
-                                         window_text(saved_->window) + ", that of frame " +
-                                         std::to_string(header.frame) + " is " +
-                                         window_text(header.data_window));
+        throw Error(ErrorKind::usage, file + ": this history is of another size: its window is " +
+                                          window_text(saved_->window) + ", that of frame " +
+                                          std::to_string(header.frame) + " is " +
+                                          window_text(header.data_window));
     last_ = {saved_->frame, saved_->window, saved_->camera, header.pixel_aspect};
     camera_before_ = saved_->camera;
 }
@@ -66,8 +66,8 @@ void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
 void PipelineRenderer::restore(const SavedHistory& saved) {
     const std::string missing = saved.give_to(built_->executor->history());
     if (!missing.empty())
-        throw Error(ExitCode::usage, saved.path.string() + ": this history has no '" + missing +
-                                         "' of the size that this frame needs");
+        throw Error(ErrorKind::usage, saved.path.string() + ": this history has no '" + missing +
+                                          "' of the size that this frame needs");
 }
 
 }  // namespace aftershade

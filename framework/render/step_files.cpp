@@ -1,24 +1,11 @@
 #include "framework/render/step_files.h"
 
-#include <sstream>
 #include <utility>
 
 #include "framework/base/error.h"
 #include "framework/file/picture.h"
 
 namespace aftershade {
-
-namespace {
-
-[[noreturn]] void refuse(const Diagnostics& faults) {
-    std::ostringstream text;
-    faults.print(text);
-    std::string message = text.str();
-    while (message.ends_with('\n')) message.pop_back();
-    throw Error(ExitCode::usage, message);
-}
-
-}  // namespace
 
 const std::map<std::string, ParamFile>& StepFiles::of_step(int index, const PipelineStep& step,
                                                            const ParamReader& params) {
@@ -32,7 +19,7 @@ const std::map<std::string, ParamFile>& StepFiles::of_step(int index, const Pipe
     for (const auto& [name, path] : paths)
         if (auto file = load_param_file(*step.manifest->find_param(name), path, faults))
             loaded.files[name] = std::move(*file);
-    if (faults.has_errors()) refuse(faults);
+    if (faults.has_errors()) throw Error(ErrorKind::usage, faults);
     return (steps_[index] = std::move(loaded)).files;
 }
 
@@ -43,7 +30,7 @@ const Image& StepFiles::mask_of(const std::filesystem::path& path) {
     try {
         picture = read_picture(path, PictureSpace::data);
     } catch (const Error& error) {
-        throw Error(ExitCode::usage, error.what());
+        throw Error(ErrorKind::usage, error.what());
     }
     Image mask(picture.width(), picture.height(), 1);
     for (std::size_t i = 0; i < mask.floats().size(); ++i) mask.floats()[i] = picture.floats()[i * 4];

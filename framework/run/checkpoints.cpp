@@ -7,6 +7,7 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/capture/frame_range.h"
 #include "framework/render/history_file.h"
@@ -49,7 +50,8 @@ fs::path Checkpoints::writable(int frame) const {
         make_folder_below(base_, name_);
         return path_below(base_, name_of(frame));
     } catch (const Error& error) {
-        throw Error(ExitCode::output, std::string(error.what()) + " (--checkpoint 0 runs without)");
+        throw Error(ErrorKind::output,
+                    std::string(error.what()) + " (" + spelled(Option::checkpoint, "0") + " runs without)");
     }
 }
 

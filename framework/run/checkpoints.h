@@ -23,7 +23,7 @@ public:
     bool holds(int frame, const std::string& fingerprint) const;
     /// Places in the run of the frames that have one, latest first.
     std::vector<std::size_t> saved() const;
-    /// The same, to be written: makes the folder. Throws Error(ExitCode::output).
+    /// The same, to be written: makes the folder. Throws Error(ErrorKind::output).
     std::filesystem::path writable(int frame) const;
     /// Keeps those of the two latest frames in the order of the run.
     void drop_old() const;

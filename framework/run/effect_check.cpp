@@ -159,9 +159,10 @@ void add_required_images(const EffectManifest& manifest, Capture& capture) {
     }
 }
 
-/// "" where all is well.
-std::string fault_of(gpu::Context& context, const EffectManifest& manifest, const Setting& setting,
-                     const std::filesystem::path& data_folder, NativeSources natives) {
+/// None where all is well.
+std::vector<Diagnostic> faults_of(gpu::Context& context, const EffectManifest& manifest,
+                                  const Setting& setting, const std::filesystem::path& data_folder,
+                                  NativeSources natives) {
     const Pipeline pipeline = pipeline_of(manifest, setting);
     std::vector<std::string> roles;
     for (const OutputSpec& output : manifest.outputs) roles.push_back(output.role);
@@ -183,32 +184,27 @@ std::string fault_of(gpu::Context& context, const EffectManifest& manifest, cons
         try {
             // Timed, so that each pass has ended before the next begins: what fails is then known.
             const std::string bad = first_bad_value(renderer.render(frame, roles, true));
-            if (!bad.empty()) return bad;
+            if (!bad.empty()) return {{Severity::error, {}, bad}};
         } catch (const Error& error) {
-            return error.what();
+            return error.faults();
         }
     }
-    return "";
+    return {};
 }
 
-/// A shader's faults are lines that bring their own places; other faults are the manifest's.
-void add_fault(const EffectManifest& manifest, const Setting& setting, const std::string& fault,
+/// A shader's faults have places; others are the manifest's.
+void add_fault(const EffectManifest& manifest, const Setting& setting, const Diagnostic& fault,
                Diagnostics& diagnostics) {
-    constexpr std::string_view kMark = ": error: ";
-    for (const std::string_view line : split(fault, '\n')) {
-        // The check of the texts may have found the same.
-        const bool is_known = std::ranges::any_of(diagnostics.all(), [&](const Diagnostic& found) {
-            return to_string(found.place) + std::string(kMark) + found.message == line;
-        });
-        if (is_known) continue;
-        const std::size_t at = line.find(kMark);
-        if (at == std::string_view::npos)
-            diagnostics.error({(manifest.folder / "effect.json").string()},
-                              "with " + setting.name + ": " + std::string(line));
-        else
-            diagnostics.error({std::string(line.substr(0, at))},
-                              std::string(line.substr(at + kMark.size())) + " (with " + setting.name + ")");
-    }
+    // The check of the texts may have found the same.
+    const bool is_known = std::ranges::any_of(diagnostics.all(), [&](const Diagnostic& found) {
+        return to_string(found.place) == to_string(fault.place) && found.message == fault.message;
+    });
+    if (is_known) return;
+    if (!fault.place.file.empty())
+        return diagnostics.error(fault.place, fault.message + " (with " + setting.name + ")");
+    for (const std::string_view line : split(fault.message, '\n'))
+        diagnostics.error({(manifest.folder / "effect.json").string()},
+                          "with " + setting.name + ": " + std::string(line));
 }
 
 }  // namespace
@@ -217,9 +213,11 @@ void check_effect(gpu::Context& context, const EffectManifest& manifest,
                   const std::filesystem::path& data_folder, NativeSources natives, Diagnostics& diagnostics) {
     std::set<std::string> told;
     for (const Setting& setting : settings_of(manifest)) {
-        const std::string fault = fault_of(context, manifest, setting, data_folder, natives);
-        if (fault.empty() || !told.insert(fault).second) continue;
-        add_fault(manifest, setting, fault, diagnostics);
+        const std::vector<Diagnostic> faults = faults_of(context, manifest, setting, data_folder, natives);
+        std::string text;
+        for (const Diagnostic& fault : faults) text += to_string(fault.place) + ": " + fault.message + "\n";
+        if (!told.insert(text).second) continue;
+        for (const Diagnostic& fault : faults) add_fault(manifest, setting, fault, diagnostics);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/file/exr_loss.h"
 #include "framework/image/role.h"
@@ -119,12 +120,13 @@ void refuse_lossy_data(const std::filesystem::path& path, const ExrContent& cont
         if (!loses_bits(options.compression, channel.name, channel.type)) continue;
         const bool is_id = is_id_channel(channel, header);
         if (!is_id && content.pictures.contains(channel.name)) continue;
-        throw Error(ExitCode::output, path.string() + ": the compression " + options.compression +
-                                          " loses bits of the channel '" + channel.name + "', which " +
-                                          (is_id                   ? "holds ids"
-                                           : options.keep_channels ? "--keep-channels keeps bit for bit"
-                                                                   : "holds data") +
-                                          " (choose zip, zips, piz, rle or none)");
+        throw Error(ErrorKind::output,
+                    path.string() + ": the compression " + options.compression +
+                        " loses bits of the channel '" + channel.name + "', which " +
+                        (is_id                   ? std::string("holds ids")
+                         : options.keep_channels ? spelled(Option::keep_channels) + " keeps bit for bit"
+                                                 : "holds data") +
+                        " (choose zip, zips, piz, rle or none)");
     }
 }
 
@@ -139,8 +141,10 @@ std::string overflow_text(const std::filesystem::path& path, const OutputOptions
     }
     return "frame " + std::to_string(frame) + ": " + path.string() + ": " + std::to_string(values) +
            (values == 1 ? " value" : " values") + " of " + list_of_names(channels, "and") +
-           " above 65504, the largest half, became infinite (write floats: --pixel-type float" +
-           (options.keep_channels ? " without --keep-channels" : "") + "; or lower the exposure)";
+           " above 65504, the largest half, became infinite (write floats: " +
+           spelled(Option::pixel_type, "float") +
+           (options.keep_channels ? " without " + spelled(Option::keep_channels) : "") +
+           "; or lower the exposure)";
 }
 
 }  // namespace
@@ -188,7 +192,7 @@ std::string write_exr_output(const std::filesystem::path& path, const OutputOpti
         if (options.keep_channels && is_kept) continue;
         const Image* image = find_image(name, result, capture);
         if (!image)
-            throw Error(ExitCode::capture,
+            throw Error(ErrorKind::capture,
                         capture.header.path.string() + ": the role '" + name +
                             "', requested in the output, is in neither the capture nor the look" +
                             roles_there(capture.header.roles));

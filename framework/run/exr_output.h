@@ -18,8 +18,8 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
 
 /// The roles asked for, under native names. With `options.keep_channels`, all channels of the source under
 /// their own names instead, those of roles that a step changed re-encoded to the source's conventions, and
-/// beside them the roles asked for that the source does not have. Throws Error(ExitCode::capture) for a role
-/// that is nowhere, Error(ExitCode::output). Returns what a half could not hold, as a message with the
+/// beside them the roles asked for that the source does not have. Throws Error(ErrorKind::capture) for a role
+/// that is nowhere, Error(ErrorKind::output). Returns what a half could not hold, as a message with the
 /// remedy;
 /// "" where nothing was lost.
 std::string write_exr_output(const std::filesystem::path& path, const OutputOptions& options,

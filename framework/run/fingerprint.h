@@ -44,7 +44,7 @@ struct FingerprintSource {
 /// The program's version, the renderer, the look's documents, the values of its steps, the files that these
 /// name, its effects and plug-ins by content, the options of outputs that change pixels, capture.json but for
 /// what only says which frames there are, profiles, and what the first frame decides. Throws
-/// Error(ExitCode::usage) for a file that cannot be read.
+/// Error(ErrorKind::usage) for a file that cannot be read.
 FingerprintParts setup_parts(const FingerprintSource& source, const CaptureReader& reader);
 
 /// One frame's.
@@ -65,7 +65,7 @@ public:
     FrameFingerprints(std::string setup, const Sequence& sequence, const CaptureReader& reader,
                       const Pipeline& pipeline, RunOptions run);
 
-    /// Of the index-th frame of the run. Throws Error(ExitCode::usage) for a damaged history.
+    /// Of the index-th frame of the run. Throws Error(ErrorKind::usage) for a damaged history.
     FrameFingerprint of(std::size_t index);
     /// The frame has no pixels, so history restarts behind it.
     void mark_failed(std::size_t index);

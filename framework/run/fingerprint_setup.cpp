@@ -20,11 +20,11 @@ std::string document_content(const fs::path& file, std::initializer_list<const c
     constexpr bool kThrows = true, kIgnoreComments = true;
     try {
         auto document =
-            nlohmann::json::parse(read_text_file(file, ExitCode::usage), nullptr, kThrows, kIgnoreComments);
+            nlohmann::json::parse(read_text_file(file, ErrorKind::usage), nullptr, kThrows, kIgnoreComments);
         for (const char* key : left_out) document.erase(key);
         return document.dump();
     } catch (const nlohmann::json::exception& fault) {
-        throw Error(ExitCode::usage, file.string() + ": " + fault.what());
+        throw Error(ErrorKind::usage, file.string() + ": " + fault.what());
     }
 }
 
@@ -105,7 +105,7 @@ FingerprintParts setup_parts(const FingerprintSource& source, const CaptureReade
     parts["program"] = AFTERSHADE_VERSION;
     parts["renderer"] = content_hash(source.renderer);
     std::string documents;
-    for (const fs::path& file : source.look.files) documents += read_text_file(file, ExitCode::usage) + "\n";
+    for (const fs::path& file : source.look.files) documents += read_text_file(file, ErrorKind::usage) + "\n";
     parts["look"] = content_hash(documents);
     for (const PipelineStep& step : source.pipeline.steps) {
         const std::string effect = "effect " + step.manifest->id;

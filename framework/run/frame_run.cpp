@@ -92,7 +92,7 @@ void FrameRun::meet_non_finite(const Capture& capture, RunReport& report, const 
     if (capture.non_finite.empty()) return;
     note_non_finite(capture.header.frame, report);
     const auto sentences = describe_non_finite(run_.on_nan, capture);
-    if (run_.on_nan == NanPolicy::fail) throw Error(ExitCode::capture, sentences.front());
+    if (run_.on_nan == NanPolicy::fail) throw Error(ErrorKind::capture, sentences.front());
     if (observer.non_finite) std::ranges::for_each(sentences, observer.non_finite);
 }
 

@@ -31,7 +31,7 @@ public:
     /// While the frame is read: builds its graph by what its header says, if that is enough. Faults are left
     /// to render(), which meets them in their order.
     void build_ahead(std::size_t index, const std::vector<std::string>& roles);
-    /// Reading's faults come as Error(ExitCode::capture), and so do pixels that NanPolicy::fail refuses.
+    /// Reading's faults come as Error(ErrorKind::capture), and so do pixels that NanPolicy::fail refuses.
     Rendered render(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
                     const RunObserver& observer);
 

@@ -13,6 +13,7 @@
 
 #include "framework/base/content_hash.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/run/run_lock.h"
 
@@ -81,8 +82,9 @@ Journal::Journal(RunState state) : state_(std::move(state)) {
     std::istringstream in(read_file_below(state_.folder, RunState::kJournal, kMostBytes, fault));
     for (std::string line; std::getline(in, line);) read_line(line);
     if (!fault.empty() && fault != kNoSuchFile)
-        throw Error(ExitCode::output, state_.journal().string() + ": this journal of earlier runs " + fault +
-                                          " (make it readable, delete it, or run with --no-journal)");
+        throw Error(ErrorKind::output, state_.journal().string() + ": this journal of earlier runs " + fault +
+                                           " (make it readable, delete it, or run with " +
+                                           spelled(Option::no_journal) + ")");
 }
 
 void Journal::read_line(const std::string& line) {
@@ -138,8 +140,8 @@ void Journal::add(int frame, const std::string& setup, const FrameFingerprint& f
 /// else, and the outputs themselves were flushed before they got their names.
 void Journal::append(std::string line) const {
     const auto fail = [&](const std::string& why) {
-        return Error(ExitCode::output,
-                     state_.journal().string() + ": " + why + " (--no-journal runs without it)");
+        return Error(ErrorKind::output, state_.journal().string() + ": " + why + " (" +
+                                            spelled(Option::no_journal) + " runs without it)");
     };
     std::string fault;
     const auto opened = open_file_below(state_.folder, RunState::kJournal, fault, FileUse::append);

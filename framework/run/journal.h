@@ -33,8 +33,8 @@ struct JournalFrame {
 /// rendered. [several processes may append to one journal]
 class Journal {
 public:
-    /// Reads what is there, which may be nothing. Throws Error(ExitCode::output) where a journal is there and
-    /// cannot be read.
+    /// Reads what is there, which may be nothing. Throws Error(ErrorKind::output) where a journal is there
+    /// and cannot be read.
     explicit Journal(RunState state);
 
     /// The last line of that frame; nullptr without one.
@@ -43,10 +43,10 @@ public:
     const FingerprintParts* setup(const std::string& hash) const;
 
     /// What frames to come share: it is appended with the first of them, unless the journal has it. Makes the
-    /// folder. Throws Error(ExitCode::output).
+    /// folder. Throws Error(ErrorKind::output).
     void begin(const FingerprintParts& setup);
     /// Appends one frame whose files are in place; reads them for their hashes. Throws
-    /// Error(ExitCode::output). [one call at a time]
+    /// Error(ErrorKind::output). [one call at a time]
     void add(int frame, const std::string& setup, const FrameFingerprint& fingerprint,
              const std::vector<std::filesystem::path>& files, double seconds);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/base/diagnostics.h"
+#include "framework/base/option.h"
 #include "framework/file/exr_file.h"
 #include "framework/image/role.h"
 
@@ -52,19 +53,21 @@ std::string decoded_text(NanPolicy policy, const std::string& role) {
 
 std::string remedy(NanPolicy policy, const std::string& role = "") {
     const std::string decoded = decoded_as(role);
+    const std::string mend = spelled(Option::on_nan, "mend") + " replaces such pixels";
+    const std::string fail = spelled(Option::on_nan, "fail");
     if (policy != NanPolicy::fail)
-        return decoded.empty() ? " (--on-nan mend replaces such pixels, --on-nan fail leaves such frames out)"
-                               : " (--on-nan fail leaves such frames out)";
-    return "; the frame is left out (--on-nan fail; " +
-           (decoded.empty() ? "--on-nan mend replaces such pixels)"
-                            : "--on-nan warn reads them as " + decoded + ")");
+        return " (" + (decoded.empty() ? mend + ", " : "") + fail + " leaves such frames out)";
+    return "; the frame is left out (" + fail + "; " +
+           (decoded.empty() ? mend : spelled(Option::on_nan, "warn") + " reads them as " + decoded) + ")";
 }
 
 std::string source_text(const Capture& capture) {
     std::vector<std::string> roles;
     for (const auto& [role, pixels] : capture.non_finite)
         if (pixels.mended == 0) roles.push_back(role);
-    if (roles.empty()) return "; what effects read has none, so an effect made them: --audit names its pass";
+    if (roles.empty())
+        return "; what effects read has none, so an effect made them" +
+               advice(": ", Option::audit, "", " names its pass");
     return "; the capture has them in " + list_of_names(roles, "and");
 }
 

@@ -7,6 +7,7 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
 #include "framework/file/png_file.h"
@@ -116,15 +117,12 @@ struct OutputName {
 
 std::vector<OutputName> all_names(const OutputOptions& options) {
     std::vector<OutputName> names;
-    const auto add = [&](const std::string& option, const std::string& text, bool is_telemetry) {
-        OutputName& name = names.emplace_back();
-        name.place.file = option;
-        name.text = text;
-        name.is_telemetry = is_telemetry;
-    };
-    for (const std::string& text : options.patterns) add("-o " + text, text, false);
-    for (const auto& [tap, text] : options.tap_patterns) add("--tap " + tap + "=" + text, text, false);
-    if (!options.telemetry.empty()) add("--telemetry " + options.telemetry, options.telemetry, true);
+    for (const std::string& text : options.patterns)
+        names.push_back({option_place(Option::output, text), text});
+    for (const auto& [tap, text] : options.tap_patterns)
+        names.push_back({option_place(Option::tap, tap + "=" + text), text});
+    if (!options.telemetry.empty())
+        names.push_back({option_place(Option::telemetry, options.telemetry), options.telemetry, true});
     return names;
 }
 
@@ -146,17 +144,19 @@ void prepare_output_folders(const OutputOptions& options, const Sequence& sequen
 void check_outputs(const OutputOptions& options, const Sequence& sequence, InputFiles& inputs,
                    Diagnostics& diagnostics) {
     if (options.patterns.empty() && !options.stream_format)
-        diagnostics.error({"-o"}, "no output; name at least one file, such as -o out_####.exr");
+        diagnostics.error(option_place(Option::output), "no output; name at least one file, such as " +
+                                                            spelled(Option::output, "out_####.exr"));
     for (const auto& [place, text, is_telemetry] : all_names(options)) {
         const FramePattern pattern(text);
         const std::string type = extension(text);
         if (is_telemetry ? type != ".json" : type != ".exr" && type != ".png")
-            diagnostics.error(
-                place, "the format '" + type + "' is not known; " +
-                           (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png") +
-                           (is_film(type) ? "; for a film, -o - --print-ffmpeg prints the command that "
-                                            "gives the frames to ffmpeg"
-                                          : ""));
+            diagnostics.error(place,
+                              "the format '" + type + "' is not known; " +
+                                  (is_telemetry ? "telemetry ends in .json" : "outputs end in .exr or .png") +
+                                  (is_film(type) ? "; for a film, " + spelled(Option::output, "-") + " " +
+                                                       spelled(Option::print_ffmpeg) +
+                                                       " prints the command that gives the frames to ffmpeg"
+                                                 : ""));
         if (sequence.frames.size() > 1 && !pattern.has_frame())
             diagnostics.error(place, std::to_string(sequence.frames.size()) +
                                          " frames cannot share one file; write the number as #### or %04d");
@@ -166,17 +166,18 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Input
     for (const std::string& tap : std::set<std::string>(options.taps.begin(), options.taps.end()))
         for (const int frame : sequence.frames)
             if (!options.patterns.empty() && !options.tap_patterns.contains(tap) &&
-                !inputs.check_output({"--tap " + tap}, path_of_tap(options, tap, frame), diagnostics))
+                !inputs.check_output(option_place(Option::tap, tap), path_of_tap(options, tap, frame),
+                                     diagnostics))
                 break;
     const auto& known = exr_compression_names();
     if (std::find(known.begin(), known.end(), options.compression) == known.end() &&
         !exr_compression_level(options.compression))
         diagnostics.error(
-            {"--compression " + options.compression},
+            option_place(Option::compression, options.compression),
             "must be one of " + list_of_names(known) + ", or zip or zips with a level, as zip:1");
     std::set<std::string> roles;
     for (const std::string& role : options.roles) {
-        const Place place{"--output-roles " + role};
+        const Place place = option_place(Option::output_roles, role);
         if (!find_role(role)) diagnostics.error(place, "not a role" + did_you_mean(role, role_names()));
         if (!roles.insert(role).second) diagnostics.error(place, "this role is named twice");
     }

@@ -38,7 +38,7 @@ struct WrittenFiles {
 
 /// Writes one frame, each file by rename. A role that no step made is taken from the capture. PNG takes
 /// `display`, else color encoded as sRGB, over the display window; so does the stream, if there is one.
-/// Throws Error(ExitCode::output).
+/// Throws Error(ErrorKind::output).
 WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture,
                            const CaptureReader& reader);
 

@@ -37,7 +37,7 @@ struct ResumeOptions {
 class ResumableRun {
 public:
     /// Reads the journal beside the first output and decides on every frame. Writes nothing. Throws
-    /// Error(ExitCode::usage) for a file of the look that cannot be read, Error(ExitCode::output) for a
+    /// Error(ErrorKind::usage) for a file of the look that cannot be read, Error(ErrorKind::output) for a
     /// journal that cannot be.
     ResumableRun(const FingerprintSource& source, const CaptureReader& reader, const ResumeOptions& options);
 
@@ -49,7 +49,7 @@ public:
     RunOptions planned_run() const;
     /// Refers to this. Journal and checkpoints are written through them.
     RunHooks hooks();
-    /// Before the first frame. Throws Error(ExitCode::output).
+    /// Before the first frame. Throws Error(ErrorKind::output).
     void begin();
     /// After a run that has done everything: its checkpoints go.
     void finish() const { checkpoints_.drop_all(); }

@@ -49,7 +49,7 @@ public:
     Outcomes(RunReport& report, const RunObserver& observer) : report_(report), observer_(observer) {}
 
     void failed(int frame, const Error& error) {
-        report_.failures.push_back({frame, error.what(), error.exit_code()});
+        report_.failures.push_back({frame, error.what(), error.kind()});
         if (observer_.frame_failed) observer_.frame_failed(error.what());
         finished(frame, FrameOutcome::Kind::failed, error.what());
     }
@@ -145,7 +145,7 @@ bool accept_outputs(const FrameRun::Rendered& frame, NanPolicy policy, RunReport
     note_non_finite(capture.header.frame, report);
     const auto sentences = describe_non_finite(policy, frame.non_finite, capture);
     if (policy == NanPolicy::fail) {
-        outcomes.failed(capture.header.frame, Error(ExitCode::effect, sentences.front()));
+        outcomes.failed(capture.header.frame, Error(ErrorKind::effect, sentences.front()));
         return false;
     }
     if (observer.non_finite) std::ranges::for_each(sentences, observer.non_finite);
@@ -214,8 +214,8 @@ private:
         try {
             frame = frame_run_.render(index, wanted(), report_, observer_);
         } catch (const Error& error) {
-            if (error.exit_code() != ExitCode::memory) finish_write();
-            if (error.exit_code() != ExitCode::capture) throw;
+            if (error.kind() != ErrorKind::memory) finish_write();
+            if (error.kind() != ErrorKind::capture) throw;
             if (!warms_up(index)) outcomes_.failed(number, error);
             else if (observer_.frame_failed) observer_.frame_failed(error.what());
             if (hooks.frame_failed) hooks.frame_failed(number, renderer_);
@@ -312,7 +312,7 @@ RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const s
         RunReport report = FrameLoop(setup, context, *renderer, loader, observer, end_gl).run(stop);
         renderer.reset();
         NativeRegistry* const natives = setup.options.natives.registry;
-        if (natives && report.exit_code() == ExitCode::done) natives->require_ends();
+        if (natives && report.is_whole()) natives->require_ends();
         return report;
     } catch (const std::exception& error) {
         if (renderer && is_out_of_memory(error)) context.abandon();  // before the renderer goes

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
 #include "framework/run/run_state.h"
@@ -148,8 +149,8 @@ void RunLock::open_file() {
         std::string fault;
         auto opened = open_file_below(folder_, name_, fault, FileUse::update);
         if (!opened)
-            throw Error(ExitCode::output,
-                        (folder_ / name_).string() + ": " + fault + " (--no-journal runs without locks)");
+            throw Error(ErrorKind::output, (folder_ / name_).string() + ": " + fault + " (" +
+                                               spelled(Option::no_journal) + " runs without locks)");
         file_ = opened->release();
         held_ = lock_bytes(file_, F_OFD_SETLKW, F_WRLCK, 0, 1);
         struct stat ours {
@@ -220,9 +221,9 @@ bool RunLock::take(const std::vector<int>& frames) {
             return false;
         });
         close(file_);
-        throw Error(ExitCode::output, pattern_ + ": another run is writing frames " + text_of({range}) +
-                                          " of this output (" + who +
-                                          "); wait for it or end it, or write to another output");
+        throw Error(ErrorKind::output, pattern_ + ": another run is writing frames " + text_of({range}) +
+                                           " of this output (" + who +
+                                           "); wait for it or end it, or write to another output");
     }
     return true;
 }

@@ -16,7 +16,7 @@ bool lock_whole_file(int file);
 /// the last holder.
 class RunLock {
 public:
-    /// `command` is for messages. Throws Error(ExitCode::output) where another run holds one of the frames,
+    /// `command` is for messages. Throws Error(ErrorKind::output) where another run holds one of the frames,
     /// naming its process, host, start and frames, and where the folder cannot be written.
     RunLock(const std::string& pattern, std::vector<int> frames, const std::string& command);
     ~RunLock();

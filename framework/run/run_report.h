@@ -29,7 +29,7 @@ struct PassStatistics {
 struct FrameFailure {
     int frame = 0;
     std::string message;
-    ExitCode code = ExitCode::capture;  ///< what it would be alone
+    ErrorKind kind = ErrorKind::capture;
 };
 
 /// How one frame of a run ended.
@@ -63,7 +63,9 @@ struct RunReport {
     std::string graph_dot;                  ///< of the last frame, in Graphviz's language
     std::uint64_t bytes = 0;                ///< of its textures and buffers
     std::uint64_t bytes_unaliased = 0;      ///< what these would take if none shared memory
-    ExitCode exit_code() const;
+
+    bool has_frames() const { return frames_done + frames_unwritten + frames_current > 0; }
+    bool is_whole() const { return has_frames() && failures.empty() && !interrupted; }
 };
 
 /// Called on the caller's thread. Any may be empty.

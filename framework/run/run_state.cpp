@@ -2,6 +2,7 @@
 
 #include "framework/base/content_hash.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/capture/frame_range.h"
 
@@ -23,9 +24,10 @@ void make_state_folder(const RunState& state) {
     try {
         make_folder_below(state.folder, ".aftershade");
     } catch (const Error& error) {
-        throw Error(ExitCode::output, std::string(error.what()) +
-                                          " (runs of several frames keep their journal "
-                                          "there; --no-journal does without)");
+        throw Error(ErrorKind::output, std::string(error.what()) +
+                                           " (runs of several frames keep their journal "
+                                           "there; " +
+                                           spelled(Option::no_journal) + " does without)");
     }
 }
 

@@ -20,7 +20,7 @@ struct RunState {
 /// Of an output's pattern. Patterns that differ in the number's width alone are one.
 RunState run_state(const std::string& pattern);
 
-/// Makes the state folder. Throws Error(ExitCode::output) with the remedy.
+/// Makes the state folder. Throws Error(ErrorKind::output) with the remedy.
 void make_state_folder(const RunState& state);
 
 }  // namespace aftershade

@@ -23,7 +23,7 @@ Image last_frame(const RunSetup& setup, const std::filesystem::path& folder, std
     // A frame that is only for history fails none of the run; the error would be that of fewer frames.
     RunObserver strict = observer;
     strict.frame_failed = [](const std::string& why) {
-        throw Error(ExitCode::capture, why + "; a warm-up is measured on frames that can all be read");
+        throw Error(ErrorKind::capture, why + "; a warm-up is measured on frames that can all be read");
     };
     const std::atomic<bool> stop = false;
     run_frames(

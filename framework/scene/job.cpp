@@ -10,6 +10,7 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/capture/capture_writer.h"
 #include "framework/capture/light.h"
@@ -135,7 +136,7 @@ public:
         const Clock::time_point start = Clock::now();
         std::error_code failure;
         fs::create_directories(job_.folder, failure);
-        if (failure) throw Error(ExitCode::output, job_.folder.string() + ": " + failure.message());
+        if (failure) throw Error(ErrorKind::output, job_.folder.string() + ": " + failure.message());
         remove_stale_temporaries(job_.folder);
         for (const int frame : job_.frames) {
             if (stop) break;
@@ -347,49 +348,55 @@ std::optional<Truth> parse_truth(const std::string& text) {
 }
 
 void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
-    const auto fault = [&](const char* option, const std::string& text) {
-        diagnostics.error({option, 0, 0}, text);
+    const auto fault = [&](Option option, const std::string& text, const std::string& value = "") {
+        diagnostics.error(option_place(option, value), text);
     };
-    if (job.folder.empty()) fault("--output", "names no folder");
+    if (job.folder.empty()) fault(Option::output, "names no folder");
     if (!numbers_fit(job))
-        fault("--subframes", fmt::format("file numbers, {} times the frame's, go beyond the {} that a "
-                                         "capture's range can have; choose lower frames",
-                                         job.subframes, kMaxFileNumber));
+        fault(Option::subframes, fmt::format("file numbers, {} times the frame's, go beyond the {} that a "
+                                             "capture's range can have; choose lower frames",
+                                             job.subframes, kMaxFileNumber));
     if (const std::uint64_t bytes = bytes_of_job(job); bytes > kMaxJobBytes)
-        fault(job.texture_object >= 0 ? "--texture-size" : "--size",
+        fault(job.texture_object >= 0 ? Option::texture_size : Option::size,
               fmt::format("rendering takes about {:.1f} GiB of memory, the limit is {:.0f} GiB; render fewer "
                           "pixels at once{}",
                           double(bytes) / kGiB, double(kMaxJobBytes) / kGiB,
-                          has_lists(job) ? ", or choose fewer --list-nodes" : ""));
+                          has_lists(job) ? ", or choose fewer " + spelled(Option::list_nodes) : ""));
     if (!job.captures && job.truths.empty() && !job.visibility)
-        fault("--truth-only", "there is no --truth and no --visibility to render");
+        fault(Option::truth_only, "there is no " + spelled(Option::truth) + " and no " +
+                                      spelled(Option::visibility) + " to render");
     const bool scattering =
         std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });
     const bool scatters =
         std::any_of(scene.materials.begin(), scene.materials.end(),
                     [](const Material& material) { return material.scattering.has_value(); });
     if (scattering && scene.has_transparency())
-        fault("--truth scattering",
-              "the scene has materials with an \"opacity\" below 1; scattering needs 1");
+        fault(Option::truth, "the scene has materials with an \"opacity\" below 1; scattering needs 1",
+              "scattering");
     if (scattering && !scatters)
-        fault("--truth scattering", "no material of the scene has a \"scattering_profile\"");
+        fault(Option::truth, "no material of the scene has a \"scattering_profile\"", "scattering");
     if (scattering && job.scattering_samples < 64)
-        fault("--samples", "scattering needs at least 64 points for each pixel");
+        fault(Option::samples, "scattering needs at least 64 points for each pixel");
     const bool shutter =
         std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.kinds.shutter; });
     if ((shutter || job.subframes > 1) && scene.camera.shutter_angle_deg == 0)
-        fault("the shutter",
-              "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
-    if (job.texture_object >= 0 && job.subframes > 1) fault("--subframes", "texture space has no sub-frames");
-    if (job.texture_object >= 0 && !job.truths.empty()) fault("--truth", "is not there in texture space");
-    if (job.texture_object >= 0 && job.visibility) fault("--visibility", "is not there in texture space");
-    const char* const layered = job.deep ? "--deep" : job.layers > 1 ? "--layers" : nullptr;
-    if (layered && job.texture_object >= 0) fault(layered, "is not there in texture space");
-    if (layered && !job.captures) fault(layered, "is of captures, and --truth-only writes none");
-    if (job.deep && job.layers > 1) fault("--layers", "is not for --deep, whose samples have no such number");
-    if (job.texture_object >= 0 && job.jitter) fault("--jitter", "is not there in texture space");
+        diagnostics.error(
+            {"the shutter"},
+            "its angle is 0, so that it never opens; write \"shutter\": { \"angle\": 180 } in the scene");
+    if (job.texture_object >= 0 && job.subframes > 1)
+        fault(Option::subframes, "texture space has no sub-frames");
+    if (job.texture_object >= 0 && !job.truths.empty()) fault(Option::truth, "is not there in texture space");
+    if (job.texture_object >= 0 && job.visibility) fault(Option::visibility, "is not there in texture space");
+    const bool is_layered = job.deep || job.layers > 1;
+    const Option layered = job.deep ? Option::deep : Option::layers;
+    if (is_layered && job.texture_object >= 0) fault(layered, "is not there in texture space");
+    if (is_layered && !job.captures)
+        fault(layered, "is of captures, and " + spelled(Option::truth_only) + " writes none");
+    if (job.deep && job.layers > 1)
+        fault(Option::layers, "is not for " + spelled(Option::deep) + ", whose samples have no such number");
+    if (job.texture_object >= 0 && job.jitter) fault(Option::jitter, "is not there in texture space");
     if (job.texture_object >= 0 && !has_texture_space(scene, job.texture_object))
-        fault("--object",
+        fault(Option::object,
               "no triangle of its mesh has texture coordinates between 0 and 1, so there would be nothing to "
               "see; give the mesh an unwrapping (TEXCOORD_0)");
 }

@@ -69,7 +69,7 @@ struct JobReport {
 
 /// Renders and writes, files by rename, with one frame being written while the next is rendered. `done` is
 /// called after each frame with its number. Ends early, between frames, when `stop` is set; capture.json then
-/// names the frames that are there. Throws Error(ExitCode::output).
+/// names the frames that are there. Throws Error(ErrorKind::output).
 JobReport run_job(const Scene& scene, const Profile& profile, const Job& job, const std::atomic<bool>& stop,
                   const std::function<void(int frame)>& done);
 

@@ -69,7 +69,7 @@ Mesh make_height_field(const glm::dvec2& size_m, std::span<const Wave> waves, in
 
 /// The triangles of every node of the default scene (else of all scenes) of a .gltf or .glb file, in world
 /// space; flat normals where the file has none; texture coordinates set 0. Materials, skins, animations and
-/// cameras are left, and triangles without an area. Throws Error(ExitCode::usage) that begins with the path:
+/// cameras are left, and triangles without an area. Throws Error(ErrorKind::usage) that begins with the path:
 /// not readable, no triangles, more than 4 million of them, indices out of range, values that are not finite.
 Mesh read_gltf(const std::filesystem::path& path);
 

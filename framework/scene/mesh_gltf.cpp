@@ -28,7 +28,7 @@ constexpr std::size_t kMaxTriangles = 4'000'000;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
-    throw Error(ExitCode::usage, path.string() + ": " + what);
+    throw Error(ErrorKind::usage, path.string() + ": " + what);
 }
 
 // What tinygltf opens besides the file itself: buffers, and images before it hands them on.

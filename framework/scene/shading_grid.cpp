@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/scene/blur_extent.h"
 #include "framework/scene/shape.h"
 
@@ -63,10 +64,11 @@ ShadingGrids::ShadingGrids(const SceneRenderer& renderer, int frame, const Shadi
             cells += std::uint64_t(grid.size.x) * std::uint64_t(grid.size.y);
             if (2 * cells > kMaxShadingIds)
                 throw Error(
-                    ExitCode::usage,
+                    ErrorKind::usage,
                     fmt::format("{}: the triangles of frame {} have more than {} shading samples at a "
-                                "shading rate of {}; choose a lower --shading-rate or --size",
-                                scene.path.string(), frame, kMaxShadingIds, settings.rate));
+                                "shading rate of {}; choose a lower {} or {}",
+                                scene.path.string(), frame, kMaxShadingIds, settings.rate,
+                                spelled(Option::shading_rate), spelled(Option::size)));
         }
     }
     id_count_ = std::uint32_t(2 * cells);

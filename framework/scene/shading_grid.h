@@ -42,7 +42,7 @@ struct ShadingPlace {
 class ShadingGrids {
 public:
     /// `renderer` is of a scene of meshes (triangulated()) and must outlive this. Throws
-    /// Error(ExitCode::usage) where kMaxShadingIds are not enough.
+    /// Error(ErrorKind::usage) where kMaxShadingIds are not enough.
     ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings);
 
     std::uint32_t id_count() const { return id_count_; }

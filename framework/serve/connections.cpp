@@ -14,6 +14,7 @@
 #include <exception>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 
 namespace aftershade::serve {
 
@@ -25,9 +26,11 @@ constexpr int kMostAccepted = 64;
 constexpr std::size_t kMostStrangers = 96;
 
 Error system_error(int port, const char* what) {
-    return Error(ExitCode::usage,
-                 "--port " + std::to_string(port) + ": " + what + " at 127.0.0.1: " + std::strerror(errno) +
-                     (errno == EADDRINUSE || errno == EACCES ? " (leave --port out for a free one)" : ""));
+    return Error(ErrorKind::usage, spelled(Option::port, std::to_string(port)) + ": " + what +
+                                       " at 127.0.0.1: " + std::strerror(errno) +
+                                       (errno == EADDRINUSE || errno == EACCES
+                                            ? " (leave " + spelled(Option::port) + " out for a free one)"
+                                            : ""));
 }
 
 }  // namespace

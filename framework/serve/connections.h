@@ -52,7 +52,7 @@ public:
         std::function<void(const Request& request, const Reply& reply)> work;
     };
 
-    /// Listens at `port` of 127.0.0.1; 0: at a free one. Throws Error(ExitCode::usage) where that is taken.
+    /// Listens at `port` of 127.0.0.1; 0: at a free one. Throws Error(ErrorKind::usage) where that is taken.
     Connections(int port, const Limits& limits);
     ~Connections();
     Connections(const Connections&) = delete;

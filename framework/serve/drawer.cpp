@@ -22,8 +22,8 @@ namespace aftershade::serve {
 namespace {
 
 /// Of what the look, its effects and its capture hold, and not of this machine.
-bool is_of_documents(ExitCode code) {
-    return code == ExitCode::usage || code == ExitCode::capture || code == ExitCode::effect;
+bool is_of_documents(ErrorKind kind) {
+    return kind == ErrorKind::usage || kind == ErrorKind::capture || kind == ErrorKind::effect;
 }
 
 /// The looks of requests, bound to effects of this process's own.
@@ -90,7 +90,7 @@ Response answer_or_fault(const DrawRequest& request, Looks& looks, PictureMaker&
     } catch (const Refusal& refusal) {
         return error_response(refusal.status, refusal.message);
     } catch (const Error& error) {
-        return error_response(is_of_documents(error.exit_code()) ? 400 : 500, error.what());
+        return error_response(is_of_documents(error.kind()) ? 400 : 500, error.what());
     } catch (const std::exception& error) {
         return fault_response(error);
     }
@@ -105,7 +105,7 @@ void draw_for(const ServeOptions& options, int socket) {
         maker.emplace(options.sequence, options.profiles, options.limits, options.backend,
                       options.data_folder, status);
     } catch (const Error& error) {
-        send_answer(socket, {500, std::to_string(int(error.exit_code())), error.what()});
+        send_answer(socket, {500, std::to_string(int(error.kind())), error.what()});
         return;
     }
     if (!send_answer(socket, {})) return;

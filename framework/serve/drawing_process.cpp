@@ -21,20 +21,20 @@ void DrawingProcess::start() {
         try {
             end_ = run_(other.get());
         } catch (const Error& error) {
-            end_ = {error.what(), "", false, error.exit_code()};
+            end_ = {error.what(), "", false, error.kind()};
         }
         other.reset();
     });
     const std::optional<Response> ready = receive_answer(socket_.get());
     if (!ready) {
         const DrawerEnd ended = end();
-        throw Error(ended.code, "the process that draws does not start: " + ended.reason);
+        throw Error(ended.kind, "the process that draws does not start: " + ended.reason);
     }
     if (ready->status == 200) return;
-    int code = int(ExitCode::gl);
-    std::from_chars(ready->type.data(), ready->type.data() + ready->type.size(), code);
+    int kind = int(ErrorKind::gl);
+    std::from_chars(ready->type.data(), ready->type.data() + ready->type.size(), kind);
     end();
-    throw Error(ExitCode(code), ready->body);
+    throw Error(ErrorKind(kind), ready->body);
 }
 
 DrawerEnd DrawingProcess::end() {

@@ -18,7 +18,7 @@ struct DrawerEnd {
     std::string reason;    ///< "the GL driver crashed (signal 11, SIGSEGV) while drawing pass ..."
     std::string step{};    ///< of the look, whose pass was at work; "" where none was
     bool is_hang = false;  ///< a pass took too long
-    ExitCode code = ExitCode::effect;
+    ErrorKind kind = ErrorKind::effect;
 };
 
 /// Runs a process with `socket` as its standard input, whose work is draw_for(), to its end. It is killed

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/base/atomic_file.h"
+#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/document/document.h"
 #include "framework/serve/refusal.h"
@@ -51,11 +52,13 @@ EffectFiles effect_files(const EffectRegistry& effects, const std::string& id, b
     if (!folder) throw Refusal{404, "there is no effect '" + id + "'"};
     EffectFiles files{*folder, ""};
     std::error_code failure;
-    if (read_only) files.why_not = "shaders are not written: the program runs with --read-only";
+    if (read_only)
+        files.why_not = "shaders are not written: the program runs with " + spelled(Option::read_only);
     else if (is_shipped(*folder))
         files.why_not = "'" + id +
                         "' comes with Aftershade and is not written; copy its folder, rename the effect "
-                        "and serve with --effect-path";
+                        "and serve with " +
+                        spelled(Option::effect_path);
     else if (fs::is_symlink(*folder, failure))
         files.why_not = folder->string() + " is a link, and what it leads to is not written";
     return files;

@@ -22,7 +22,7 @@ struct EffectFiles {
     // Each throws Refusal: 404 for a name that is not of names(), 409 where it cannot be read.
     std::string read(const std::string& name) const;
     /// Replaces the file, whole or not at all, if it still holds `before`. Throws Refusal 403 where it cannot
-    /// be written, 409 where it holds something else, and Error(ExitCode::output).
+    /// be written, 409 where it holds something else, and Error(ErrorKind::output).
     void write(const std::string& name, const std::string& before, const std::string& text) const;
 };
 

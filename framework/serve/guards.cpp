@@ -11,7 +11,7 @@ namespace aftershade::serve {
 std::string random_token() {
     std::array<unsigned char, 16> bytes{};
     if (::getrandom(bytes.data(), bytes.size(), 0) != ssize_t(bytes.size()))
-        throw Error(ExitCode::usage, "the system gives no random numbers for the page's token");
+        throw Error(ErrorKind::usage, "the system gives no random numbers for the page's token");
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string token;
     for (const unsigned char byte : bytes) {

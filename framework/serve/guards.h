@@ -9,7 +9,7 @@
 
 namespace aftershade::serve {
 
-/// 32 hexadecimal digits of the system's random numbers. Throws Error(ExitCode::usage) where it has none.
+/// 32 hexadecimal digits of the system's random numbers. Throws Error(ErrorKind::usage) where it has none.
 std::string random_token();
 
 /// Without an early end at the first difference, whose time would give the token away digit by digit.

@@ -30,7 +30,7 @@ public:
     }
 
 private:
-    [[noreturn]] static void fail() { throw Error(ExitCode::usage, "the look is not whole JSON"); }
+    [[noreturn]] static void fail() { throw Error(ErrorKind::usage, "the look is not whole JSON"); }
 
     bool takes(char c) {
         at_ = skip_blank(text_, at_);
@@ -97,7 +97,7 @@ SpanNode spans_of(std::string_view text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     Scanner scanner(text);
     if (!text.starts_with(kByteOrderMark)) return scanner.value(0);
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::usage,
                 "the look begins with a byte order mark; save it without one to edit it here");
 }
 

@@ -33,7 +33,7 @@ struct SpanMember {
     SpanNode value;
 };
 
-/// `text` must be one that parse_document() takes. Throws Error(ExitCode::usage) where it is not.
+/// `text` must be one that parse_document() takes. Throws Error(ErrorKind::usage) where it is not.
 SpanNode spans_of(std::string_view text);
 
 /// The first byte from `from` on that is neither white space nor of a comment; text.size() where there is

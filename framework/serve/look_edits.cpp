@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::string_view, 5> kStepKeys = {"name", "mix", "preset", "mask", "in"};
 
 [[noreturn]] void refuse(const std::string& message) {
-    throw Error(ExitCode::usage, "the edit cannot be made: " + message);
+    throw Error(ErrorKind::usage, "the edit cannot be made: " + message);
 }
 
 /// One line, with a space behind each comma and colon, as people write looks.

@@ -10,7 +10,7 @@
 namespace aftershade::serve {
 
 /// The text after one edit of the page: {"op": "set", "step": 1, "param": "exposure", "value": 0.5}. `text`
-/// is one that parse_document() takes. Throws Error(ExitCode::usage) for an edit of another form, or that
+/// is one that parse_document() takes. Throws Error(ErrorKind::usage) for an edit of another form, or that
 /// names a step which is not there.
 std::string edited(const std::string& text, const nlohmann::ordered_json& edit);
 

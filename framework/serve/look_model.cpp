@@ -6,6 +6,7 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/path_bounds.h"
 #include "framework/effect/description.h"
 #include "framework/serve/look_edits.h"
@@ -43,7 +44,7 @@ LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool 
       read_only_(read_only),
       folders_(std::move(folders)),
       effects_(find_effects_()) {
-    std::string text = read_text_file(path_, ExitCode::usage, kMaxDocumentBytes);
+    std::string text = read_text_file(path_, ErrorKind::usage, kMaxDocumentBytes);
     saved_text_ = text;
     texts_.push_back(std::move(text));
     adopt(binding_of(texts_[at_], Origin::disk));
@@ -64,13 +65,14 @@ std::string LookModel::why_not(const std::filesystem::path& file) const {
     folders.push_back(path_.parent_path());
     // Nothing of what lies elsewhere, such as where its links lead, goes to the page.
     if (has_detour(file, folders))
-        return "goes through a folder outside those that a page may read (leave the detour out, or allow the "
-               "folder with --allow-path)";
+        return "goes through a folder outside those that a page may read (leave the detour out" +
+               advice(", or allow the folder with ", Option::allow_path, "", "") + ")";
     if (named_on_disk_.contains(resolved)) return "";
     for (const auto& folder : folders)
         if (out_of_bounds(file, folder).empty()) return "";
     return "lies outside the folders that a page may read: those of the look, the capture and the effects "
-           "(move it there, or allow its folder with --allow-path)";
+           "(move it there" +
+           advice(", or allow its folder with ", Option::allow_path, "", "") + ")";
 }
 
 /// A text on disk is of who has the disk, and not of a page: its files may be named from then on.
@@ -182,7 +184,8 @@ void LookModel::redo() {
 
 void LookModel::save() {
     const std::lock_guard lock(mutex_);
-    if (read_only_) throw Refusal{403, "the look is not written: the program runs with --read-only"};
+    if (read_only_)
+        throw Refusal{403, "the look is not written: the program runs with " + spelled(Option::read_only)};
     if (!replace_text_file(path_, saved_text_, texts_[at_]))
         throw Refusal{409, path_.string() + " was changed by another program; nothing was written"};
     saved_text_ = texts_[at_];

@@ -34,7 +34,7 @@ class LookModel {
 public:
     using FindEffects = std::function<std::shared_ptr<EffectRegistry>()>;
 
-    /// Reads the file. Throws Error(ExitCode::usage) where it cannot be read. Edits may name files of the
+    /// Reads the file. Throws Error(ErrorKind::usage) where it cannot be read. Edits may name files of the
     /// look's folder, of `folders`, and of those of --allow-path, and each file that the look on disk names.
     LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
               std::vector<std::filesystem::path> folders = {});
@@ -47,7 +47,7 @@ public:
     void edit(std::uint64_t revision, const nlohmann::ordered_json& edits);
     void undo();
     void redo();
-    /// Writes the file, whole or not at all. Throws Error(ExitCode::output) too.
+    /// Writes the file, whole or not at all. Throws Error(ErrorKind::output) too.
     void save();
 
     /// Takes over what another program wrote to the file, as one step of undo, faults and all. Nothing

@@ -21,13 +21,13 @@ std::map<std::string, Response> read_page_files(const fs::path& folder) {
         const auto type = kTypes.find(entry.path().extension().string());
         if (type == kTypes.end() || !entry.is_regular_file(failure)) continue;
         files["/" + entry.path().filename().string()] = {200, type->second,
-                                                         read_text_file(entry.path(), ExitCode::usage)};
+                                                         read_text_file(entry.path(), ErrorKind::usage)};
     }
     const auto index = files.find("/index.html");
     if (index == files.end())
-        throw Error(ExitCode::usage, (folder / "index.html").string() +
-                                         ": the page is not there; install it, or "
-                                         "set AFTERSHADE_DATA to the folder that has page/");
+        throw Error(ErrorKind::usage, (folder / "index.html").string() +
+                                          ": the page is not there; install it, or "
+                                          "set AFTERSHADE_DATA to the folder that has page/");
     files["/"] = index->second;
     return files;
 }

@@ -10,7 +10,7 @@
 namespace aftershade::serve {
 
 /// By the path of the request: "/page.js". Only regular files of `folder` itself with the extension of a
-/// page's part; "/" is index.html. Throws Error(ExitCode::usage) where the folder has no index.html.
+/// page's part; "/" is index.html. Throws Error(ErrorKind::usage) where the folder has no index.html.
 std::map<std::string, Response> read_page_files(const std::filesystem::path& folder);
 
 }  // namespace aftershade::serve

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/effect/new_effect.h"
 #include "framework/image/role.h"
@@ -197,9 +198,9 @@ Response PageServer::new_effect(const Request& request) {
     const std::filesystem::path folder = body["folder"].get<std::string>();
     const auto id = body["effect"].get<std::string>();
     if (setup_.look.is_read_only())
-        throw Refusal{403, "no effect is made: the program runs with --read-only"};
+        throw Refusal{403, "no effect is made: the program runs with " + spelled(Option::read_only)};
     if (std::ranges::find(setup_.effect_folders, folder) == setup_.effect_folders.end())
-        throw Refusal{403, "'" + folder.string() + "' is not a folder of --effect-path"};
+        throw Refusal{403, "'" + folder.string() + "' is not a folder of " + spelled(Option::effect_path)};
     if (!is_snake_case(id)) throw Refusal{400, "the effect's name '" + id + "' " + kMustBeSnakeCase};
     if (id.size() > kLongestId)
         throw Refusal{400, "the effect's name has " + std::to_string(id.size()) +

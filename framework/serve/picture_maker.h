@@ -39,7 +39,7 @@ struct MadePicture {
 class PictureMaker {
 public:
     /// Copies the sequence; `status`, which receives the pass at work, must outlive this. Throws
-    /// Error(ExitCode::gl) without a context.
+    /// Error(ErrorKind::gl) without a context.
     PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, gpu::Backend backend,
                  std::filesystem::path data_folder, StatusWriter& status);
     ~PictureMaker();

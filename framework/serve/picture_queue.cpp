@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 
 namespace aftershade::serve {
 
@@ -16,8 +17,8 @@ Response superseded() {
 }
 
 std::string remedy(const DrawerEnd& end) {
-    return end.is_hang ? "; change the look or the shader, or allow more time with --pass-timeout"
-                       : "; change the look or the shader";
+    return "; change the look or the shader" +
+           (end.is_hang ? advice(", or allow more time with ", Option::pass_timeout, "", "") : "");
 }
 
 /// Whether no page waits for `older` any longer once it asks for `newer`.

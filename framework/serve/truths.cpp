@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/option.h"
 #include "framework/compare/flip.h"
 #include "framework/compare/metrics.h"
 #include "framework/file/exr_file.h"
@@ -87,9 +88,9 @@ Capture read_truth(const Sequence& sequence, int frame, const std::string& name,
     const auto truths = truths_in(folder_of(sequence, frame));
     const auto of_frame = truths.find(frame);
     if (of_frame == truths.end() || !of_frame->second.contains(name))
-        throw Refusal{404, fmt::format("frame {} has no truth '{}' beside it (`aftershade render --truth {}` "
-                                       "writes one)",
-                                       frame, name, name)};
+        throw Refusal{404,
+                      fmt::format("frame {} has no truth '{}' beside it (`aftershade render {}` writes one)",
+                                  frame, name, spelled(Option::truth, name))};
     const ExrFile file(of_frame->second.at(name), limits);
     Capture truth;
     truth.header = header;

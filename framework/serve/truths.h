@@ -16,7 +16,7 @@ namespace aftershade::serve {
 std::map<int, std::vector<std::string>> truths_of(const Sequence& sequence);
 
 /// The colour of a truth, with the frame's header. Throws Refusal where there is none, or where it has
-/// another size; Error(ExitCode::capture) where it cannot be read.
+/// another size; Error(ErrorKind::capture) where it cannot be read.
 Capture read_truth(const Sequence& sequence, int frame, const std::string& name, const CaptureHeader& header,
                    const ReadLimits& limits);
 

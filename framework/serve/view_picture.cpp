@@ -77,7 +77,7 @@ Image final_picture(const View& view) {
         return display;
     }
     const Image* color = find_image(view, kColorRole);
-    if (!color) throw Error(ExitCode::capture, "the capture has no role 'color'");
+    if (!color) throw Error(ErrorKind::capture, "the capture has no role 'color'");
     return light_picture(*color, view);
 }
 
@@ -126,7 +126,7 @@ Tap tap_of(const std::string& view, const Pipeline& pipeline) {
         if (step.manifest->find_texture(texture) || step.manifest->find_output(texture))
             return {step.name, texture};
     }
-    throw Error(ExitCode::usage, "the look has no tap '" + text + "'");
+    throw Error(ErrorKind::usage, "the look has no tap '" + text + "'");
 }
 
 namespace {
@@ -150,18 +150,18 @@ Image view_picture(const View& view) {
     if (view.name == "before") {
         const auto color = view.capture.images.find(kColorRole);
         if (color == view.capture.images.end())
-            throw Error(ExitCode::capture, "the capture has no role 'color'");
+            throw Error(ErrorKind::capture, "the capture has no role 'color'");
         return light_picture(color->second, view);
     }
     const std::string what = view.name.substr(std::min(view.name.find(':') + 1, view.name.size()));
     if (view.name.starts_with("tap:")) {
         const auto tap = view.result.taps.find(what);
         if (tap == view.result.taps.end())
-            throw Error(ExitCode::usage, "no pass made the tap '" + what + "'");
+            throw Error(ErrorKind::usage, "no pass made the tap '" + what + "'");
         return false_color_picture(std::string(kDataRole), tap->second, view.capture.header);
     }
     const Image* image = view.name.starts_with("role:") ? find_image(view, what) : nullptr;
-    if (!image) throw Error(ExitCode::usage, "there is no view '" + view.name + "' of this frame");
+    if (!image) throw Error(ErrorKind::usage, "there is no view '" + view.name + "' of this frame");
     if (is_picture(what)) return light_picture(*image, view);
     if (what == kDisplayRole) return final_picture(view);
     return false_color_picture(what, *image, view.capture.header);

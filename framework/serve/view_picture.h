@@ -21,13 +21,13 @@ struct View {
     const Capture& capture;
 };
 
-/// Display-referred values over the display window. Throws Error(ExitCode::usage) for what is not there.
+/// Display-referred values over the display window. Throws Error(ErrorKind::usage) for what is not there.
 Image view_picture(const View& view);
 
 /// Whether a view's colours stand for numbers, and are not those of a picture.
 bool is_false_color(const std::string& name);
 
-/// The tap of "tap:STEP.TEXTURE". Throws Error(ExitCode::usage) where the pipeline has none such.
+/// The tap of "tap:STEP.TEXTURE". Throws Error(ErrorKind::usage) where the pipeline has none such.
 Tap tap_of(const std::string& view, const Pipeline& pipeline);
 
 /// "m", "px"; "" for pure numbers.

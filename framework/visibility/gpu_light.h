@@ -14,8 +14,8 @@ namespace aftershade::visibility {
 
 /// As scene::resolve_light(), in single precision: at the edges of shadows and of checks some shading samples
 /// have another light. No buffer is larger than `max_buffer_bytes`: more shading samples are done in slices,
-/// larger pictures in bands of rows. Throws Error(ExitCode::usage) for more than 2^20 triangles, and what gpu
-/// throws.
+/// larger pictures in bands of rows. Throws Error(ErrorKind::usage) for more than 2^20 triangles, and what
+/// gpu throws.
 Image resolve_light(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
                     const scene::SampleIds& samples, const scene::IdSet& set,
                     std::size_t max_buffer_bytes = kMaxBufferBytes);

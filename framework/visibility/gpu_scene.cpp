@@ -72,7 +72,7 @@ std::vector<GpuNode> gpu_nodes(const scene::Bvh& bvh) {
 
 void check_triangle_count(const scene::Scene& scene, const scene::ShadingGrids& grids) {
     if (grids.grids().size() <= kMaxTriangles) return;
-    throw Error(ExitCode::usage,
+    throw Error(ErrorKind::usage,
                 fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
                             scene.path.string(), grids.grids().size(), kMaxTriangles));
 }

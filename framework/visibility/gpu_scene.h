@@ -39,7 +39,7 @@ struct GpuScene {
 inline constexpr int kLeafSize = 4;
 std::vector<GpuNode> gpu_nodes(const scene::Bvh& bvh);
 
-/// Throws Error(ExitCode::usage) for more than 2^20.
+/// Throws Error(ErrorKind::usage) for more than 2^20.
 void check_triangle_count(const scene::Scene& scene, const scene::ShadingGrids& grids);
 
 /// One hierarchy over all triangles, whose boxes hold them over the whole exposure of `frame`.

@@ -15,7 +15,7 @@
 namespace aftershade::visibility {
 
 /// What each sample met, as scene::trace_ids() gives it, in single precision: at the edges of triangles and
-/// cells some samples have another id. The samples are the renderer's own. Throws Error(ExitCode::usage) for
+/// cells some samples have another id. The samples are the renderer's own. Throws Error(ErrorKind::usage) for
 /// more than 2^20 triangles, and what gpu throws.
 std::vector<std::uint32_t> trace_ids(Passes& passes, const scene::SceneRenderer& renderer,
                                      const scene::ShadingGrids& grids, int frame,

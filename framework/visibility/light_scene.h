@@ -54,7 +54,7 @@ struct LightScene {
     std::vector<GpuLight> lights;
 };
 
-/// Throws Error(ExitCode::usage) for more than 2^20 triangles.
+/// Throws Error(ErrorKind::usage) for more than 2^20 triangles.
 LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids);
 
 }  // namespace aftershade::visibility

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 
 namespace aftershade::visibility {
 
@@ -36,10 +37,9 @@ graph::Written add_with_loops(graph::FrameGraph& graph, graph::Pass pass) {
 
 void check_loops(graph::Executor& executor, graph::BufferHandle unfinished, const std::string& what) {
     if (values_of<std::uint32_t>(executor, unfinished).front() == 0) return;
-    throw Error(ExitCode::effect,
-                what +
-                    ": a ray needs more than the 65,535 loop turns that llvmpipe allows; choose "
-                    "--visibility-on cpu");
+    throw Error(ErrorKind::effect,
+                what + ": a ray needs more than the 65,535 loop turns that llvmpipe allows; choose " +
+                    spelled(Option::visibility_on, "cpu"));
 }
 
 }  // namespace aftershade::visibility

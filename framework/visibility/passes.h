@@ -43,7 +43,7 @@ private:
 /// Adds a pass whose shader calls check_loops() of loops.glsl. The last of what it writes is for
 /// check_loops().
 graph::Written add_with_loops(graph::FrameGraph& graph, graph::Pass pass);
-/// After the pass has run. Throws Error(ExitCode::effect), which begins with `what`, if GL ended its loops
+/// After the pass has run. Throws Error(ErrorKind::effect), which begins with `what`, if GL ended its loops
 /// early.
 void check_loops(graph::Executor& executor, graph::BufferHandle unfinished, const std::string& what);
 

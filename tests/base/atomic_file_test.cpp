@@ -24,13 +24,13 @@ TEST(TextFile, IsReadByteForByte) {
     for (int i = 0; i < 200'000; ++i) bytes += char(i % 256);  // with zeros, over many reads
     for (const std::string& text : {bytes, std::string(), std::string("\n")}) {
         write_text(folder / "file", text);
-        EXPECT_EQ(read_text_file(folder / "file", ExitCode::usage), text);
+        EXPECT_EQ(read_text_file(folder / "file", ErrorKind::usage), text);
     }
 }
 
 TEST(TextFile, IsReadToItsEndWhereTheSystemDoesNotKnowItsSize) {
     ASSERT_EQ(fs::file_size("/proc/self/cmdline"), 0u);
-    EXPECT_NE(read_text_file("/proc/self/cmdline", ExitCode::usage).find("base_test"), std::string::npos);
+    EXPECT_NE(read_text_file("/proc/self/cmdline", ErrorKind::usage).find("base_test"), std::string::npos);
 }
 
 TEST(TextFile, ThatCannotBeReadIsToldWithItsPathAndTheReason) {
@@ -43,10 +43,10 @@ TEST(TextFile, ThatCannotBeReadIsToldWithItsPathAndTheReason) {
         {folder / "file/below", "cannot be read: Not a directory"}};
     for (const auto& [path, reason] : cases) {
         try {
-            read_text_file(path, ExitCode::effect);
+            read_text_file(path, ErrorKind::effect);
             FAIL() << path;
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::effect);
+            EXPECT_EQ(error.kind(), ErrorKind::effect);
             EXPECT_EQ(std::string(error.what()), path.string() + ": " + reason);
         }
     }
@@ -56,16 +56,16 @@ TEST(TextFile, IsReplacedWhereItHoldsWhatItHeldAlone) {
     TemporaryFolder folder;
     EXPECT_TRUE(replace_text_file(folder / "file", "", "one")) << "it was absent";
     EXPECT_FALSE(replace_text_file(folder / "file", "other", "two"));
-    EXPECT_EQ(read_text_file(folder / "file", ExitCode::usage), "one");
+    EXPECT_EQ(read_text_file(folder / "file", ErrorKind::usage), "one");
     EXPECT_TRUE(replace_text_file(folder / "file", "one", "two"));
-    EXPECT_EQ(read_text_file(folder / "file", ExitCode::usage), "two");
+    EXPECT_EQ(read_text_file(folder / "file", ErrorKind::usage), "two");
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
     EXPECT_THROW(replace_text_file(folder / "pipe", "", "two"), Error);
     const int holder = open(folder.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     flock(holder, LOCK_EX);
     EXPECT_THROW(replace_text_file(folder / "file", "two", "three"), Error) << "and does not wait for ever";
     close(holder);
-    EXPECT_EQ(read_text_file(folder / "file", ExitCode::usage), "two");
+    EXPECT_EQ(read_text_file(folder / "file", ErrorKind::usage), "two");
 }
 
 TEST(RegularFile, IsReadWholeUpToItsLimit) {
@@ -214,7 +214,7 @@ TEST(OutputFolder, IsMadeWithTheFoldersAboveIt) {
             prepare_output_folder(folder / path);
             FAIL() << path;
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::output);
+            EXPECT_EQ(error.kind(), ErrorKind::output);
             EXPECT_TRUE(std::string(error.what()).starts_with((folder / path).string() + ": "))
                 << error.what();
         }
@@ -270,7 +270,7 @@ std::string write_fault(const fs::path& path) {
     try {
         write_text_file(path, "text");
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::output);
+        EXPECT_EQ(error.kind(), ErrorKind::output);
         return error.what();
     }
     return "";

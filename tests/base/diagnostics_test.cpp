@@ -11,11 +11,11 @@ TEST(Diagnostics, PrintsLikeACompiler) {
     Diagnostics diagnostics;
     diagnostics.error({"looks/mine.json", 5, 31}, "bokeh.f_number: 0.02 is below the minimum 0.05");
     diagnostics.warning({"capture.json", 2, 1}, "no camera");
-    diagnostics.error({"--set bokeh.taps=x"}, "'x' is not a number");
+    diagnostics.error(option_place(Option::set, "bokeh.taps=x"), "'x' is not a number");
     EXPECT_EQ(
         test::lines_of(diagnostics),
         (Lines{"looks/mine.json:5:31: error: bokeh.f_number: 0.02 is below the minimum 0.05",
-               "capture.json:2:1: warning: no camera", "--set bokeh.taps=x: error: 'x' is not a number"}));
+               "capture.json:2:1: warning: no camera", "set bokeh.taps=x: error: 'x' is not a number"}));
     EXPECT_EQ(diagnostics.error_count(), 2);
 }
 

@@ -25,11 +25,13 @@ TEST(OutOfMemory, IsKnownByItsExceptions) {
     EXPECT_TRUE(
         is_out_of_memory(std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again))));
     EXPECT_TRUE(is_out_of_memory(std::system_error(std::make_error_code(std::errc::not_enough_memory))));
-    EXPECT_TRUE(is_out_of_memory(Error(ExitCode::memory, "")));
-    EXPECT_FALSE(is_out_of_memory(Error(ExitCode::output, "")));
+    EXPECT_TRUE(is_out_of_memory(Error(ErrorKind::memory, "")));
+    EXPECT_FALSE(is_out_of_memory(Error(ErrorKind::output, "")));
     EXPECT_FALSE(is_out_of_memory(std::system_error(std::make_error_code(std::errc::io_error))));
     EXPECT_FALSE(is_out_of_memory(std::runtime_error("")));
 }
+
+constexpr int kMemoryCode = 7;
 
 /// The exit code of a child that may take `limit_bytes` of address space; 128 + signal after a signal.
 int end_of_child(rlim_t limit_bytes, const std::function<void()>& work) {
@@ -38,11 +40,11 @@ int end_of_child(rlim_t limit_bytes, const std::function<void()>& work) {
         const rlimit limit{limit_bytes, limit_bytes}, no_core{0, 0};
         setrlimit(RLIMIT_CORE, &no_core);
         setrlimit(RLIMIT_AS, &limit);
-        prepare_for_memory_limit();
+        prepare_for_memory_limit(kMemoryCode);
         try {
             work();
         } catch (const Error& error) {
-            _exit(int(error.exit_code()));
+            _exit(error.kind() == ErrorKind::memory ? kMemoryCode : 1);
         }
         _exit(0);
     }
@@ -74,8 +76,7 @@ TEST(AddressSpace, ThatIsShortGetsLlvmpipeFewerThreads) {
 
 TEST(AddressSpace, IsRequiredBeforeItRunsOut) {
     EXPECT_EQ(end_of_child(400 * kMiB, [] { require_address_space(100 * kMiB, "a test"); }), 0);
-    EXPECT_EQ(end_of_child(400 * kMiB, [] { require_address_space(500 * kMiB, "a test"); }),
-              int(ExitCode::memory));
+    EXPECT_EQ(end_of_child(400 * kMiB, [] { require_address_space(500 * kMiB, "a test"); }), kMemoryCode);
     EXPECT_EQ(end_of_child(RLIM_INFINITY, [] { require_address_space(1ull << 50, "a test"); }), 0);
 }
 
@@ -93,12 +94,12 @@ TEST(Crash, IsPutDownToMemoryOnlyWhereTheLimitIsReached) {
                                }
                                crash();
                            }),
-              int(ExitCode::memory));
+              kMemoryCode);
 }
 
 TEST(Thread, ThatRunsOutOfMemoryEndsTheProcessWithThatExit) {
     EXPECT_EQ(end_of_child(RLIM_INFINITY, [] { std::thread([] { throw std::bad_alloc(); }).join(); }),
-              int(ExitCode::memory));
+              kMemoryCode);
     EXPECT_EQ(end_of_child(RLIM_INFINITY, [] { std::thread([] { throw 1; }).join(); }), 128 + SIGABRT);
 }
 

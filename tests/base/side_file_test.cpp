@@ -18,7 +18,7 @@ std::string error_of(const std::function<void()>& work) {
     try {
         work();
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::output);
+        EXPECT_EQ(error.kind(), ErrorKind::output);
         return error.what();
     }
     return "";

@@ -1,5 +1,6 @@
 // Workers as shell scripts: what a batch does with their crashes, hangs and errors.
 #include "framework/batch/run_jobs.h"
+#include "framework/batch/process_codes.h"
 
 #include <gtest/gtest.h>
 

@@ -169,7 +169,8 @@ TEST_F(CaptureFile, ThatCannotBeReadIsACaptureErrorWithItsPath) {
 
 TEST_F(CaptureFile, WithAnUnknownProfileNamesThoseThereAre) {
     sequence_.profile = "blendr";
-    EXPECT_EQ(error_of(ExitCode::usage, [&] { reader().read_header(1); }), "no profile 'blendr'; known: 't'");
+    EXPECT_EQ(error_of(ErrorKind::usage, [&] { reader().read_header(1); }),
+              "no profile 'blendr'; known: 't'");
 }
 
 }  // namespace

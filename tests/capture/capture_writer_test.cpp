@@ -187,7 +187,7 @@ TEST(CaptureWriter, RefusesIdsThatTheProducersFloatsCannotHold) {
             write_capture(folder / "blender.exr", capture, profile, {});
             FAIL();
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::output);
+            EXPECT_EQ(error.kind(), ErrorKind::output);
             EXPECT_NE(std::string(error.what()).find("object id 16777217"), std::string::npos)
                 << error.what();
         }
@@ -237,7 +237,7 @@ TEST(CaptureReader, TellsWhereTheLightsOfAFileAreDamaged) {
         reader.read_header(1);
         FAIL();
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(error.kind(), ErrorKind::capture);
         EXPECT_NE(std::string(error.what()).find("attribute aftershade/lights:1:"), std::string::npos)
             << error.what();
     }

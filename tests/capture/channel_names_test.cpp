@@ -152,7 +152,7 @@ TEST_F(NamedChannels, OfMotionAreListedAndNotRead) {
 
 TEST_F(NamedChannels, ThatCaptureJsonNamesNeedNoProfile) {
     const Names channels = {"left eye.1", "left eye.2", "left eye.3", "far"};
-    const std::string message = error_of(ExitCode::capture, [&] { read(channels); });
+    const std::string message = error_of(ErrorKind::capture, [&] { read(channels); });
     EXPECT_NE(message.find("'far', 'left eye.1', 'left eye.2' and 'left eye.3'"), std::string::npos)
         << message;
     RoleDecoding color, depth;

@@ -70,7 +70,7 @@ TEST_F(FirstFrame, DecidesWhichLayerIsRead) {
     EXPECT_EQ(color_of(2), (Values{5, 6, 7, 8}));
     EXPECT_EQ(differences_of_second(),
               (Names{"it has the layers 'Beta' and 'Zeta'; 'Zeta' is read, as in 1"}));
-    const std::string message = error_of(ExitCode::capture, [&] { color_of(3); });
+    const std::string message = error_of(ErrorKind::capture, [&] { color_of(3); });
     EXPECT_NE(message.find("has no layer 'Zeta'"), std::string::npos) << message;
     EXPECT_NE(message.find("it has 'alpha'"), std::string::npos) << message;
     sequence_.layer = "alpha";
@@ -153,10 +153,10 @@ TEST_F(FirstFrame, DecidesOnTheViewThatIsRead) {
     write(4, {"R", "G", "B"});
     EXPECT_FLOAT_EQ(color_of(2)[0], 1);
     EXPECT_EQ(differences_of_second()[0], "it has the views 'right' and 'left'; 'left' is read, as in 1");
-    const std::string other = error_of(ExitCode::capture, [&] { color_of(3); });
+    const std::string other = error_of(ErrorKind::capture, [&] { color_of(3); });
     EXPECT_NE(other.find("has no view 'left', which the first frame, "), std::string::npos) << other;
     EXPECT_NE(other.find("it has 'right' and 'middle' (choose"), std::string::npos) << other;
-    const std::string none = error_of(ExitCode::capture, [&] { color_of(4); });
+    const std::string none = error_of(ErrorKind::capture, [&] { color_of(4); });
     EXPECT_NE(none.find("is read in; it has none"), std::string::npos) << none;
     sequence_.view = "right";
     EXPECT_FLOAT_EQ(color_of(3)[0], 2);

@@ -97,7 +97,7 @@ TEST_F(LayeredFile, HasItsFirstLayerReadAndSaysSo) {
     ASSERT_EQ(found.notes.size(), 1u);
     EXPECT_EQ(
         found.notes[0],
-        "the file has the layers 'Far' and 'Near objects'; 'Far' is read (choose with --layer, or 'layer' "
+        "the file has the layers 'Far' and 'Near objects'; 'Far' is read (choose with layer, or 'layer' "
         "in capture.json)");
 }
 
@@ -110,7 +110,7 @@ TEST_F(LayeredFile, HasEveryRoleOfTheLayerThatWasChosen) {
         for (const std::string& channel : channels)
             EXPECT_TRUE(channel.starts_with("Near objects.")) << role << " " << channel;
     sequence_.layer = "Near";
-    const std::string message = error_of(ExitCode::usage, [&] { header(); });
+    const std::string message = error_of(ErrorKind::usage, [&] { header(); });
     EXPECT_NE(message.find("has no layer 'Near'; did you mean"), std::string::npos) << message;
     EXPECT_NE(message.find("it has 'Far' and 'Near objects'"), std::string::npos) << message;
 }

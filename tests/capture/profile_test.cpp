@@ -66,28 +66,28 @@ TEST(Profile, IsDetectedByAllOfItsChannels) {
 TEST(Profile, ThatFitsAlikeWithAnotherIsTheUsersChoice) {
     const std::vector<Profile> profiles = {detecting("one", R"({"channels": ["R"]})"),
                                            detecting("two", R"({"channels": ["G"]})")};
-    const std::string message = test::error_of(ExitCode::usage, [&] {
+    const std::string message = test::error_of(ErrorKind::usage, [&] {
         detect_profile(profiles, part_with({"R", "G", "B"}), "f.exr");
     });
     EXPECT_EQ(message,
-              "f.exr: the profiles 'one' and 'two' fit alike (name one with --profile, or as 'profile' in "
+              "f.exr: the profiles 'one' and 'two' fit alike (name one with profile, or as 'profile' in "
               "capture.json)");
     const std::vector<Profile> marked = {detecting("a", R"({"attributes": ["mark"]})"),
                                          detecting("b", R"({"attributes": ["mark"]})")};
-    test::error_of(ExitCode::usage,
+    test::error_of(ErrorKind::usage,
                    [&] { detect_profile(marked, part_with_attribute({"R"}, "mark"), "f.exr"); });
 }
 
 TEST(Profile, ThatFitsIsAskedForWhereNoneDoes) {
     const std::string message =
-        test::error_of(ExitCode::capture, [&] { detect_profile(shipped(), part_with({"foo"}), "f.exr"); });
+        test::error_of(ErrorKind::capture, [&] { detect_profile(shipped(), part_with({"foo"}), "f.exr"); });
     EXPECT_EQ(message,
-              "f.exr: no profile fits its channels, 'foo' (name one with --profile, or name the channels of "
+              "f.exr: no profile fits its channels, 'foo' (name one with profile, or name the channels of "
               "each role as \"channels\": {\"color\": {\"channels\": [\"NAME\", \"NAME\", \"NAME\"]}} in "
               "capture.json)");
     // A profile without a rule fits nothing of itself.
     const std::vector<Profile> without_rule = {detecting("quiet", "{}")};
-    test::error_of(ExitCode::capture, [&] {
+    test::error_of(ErrorKind::capture, [&] {
         detect_profile(without_rule, part_with({"R", "G", "B"}), "f.exr");
     });
 }

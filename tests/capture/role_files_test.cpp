@@ -41,7 +41,7 @@ protected:
     }
     ChannelNames channels_of(const std::string& role) const { return header().role_channels.at(role); }
     std::string refusal() const {
-        return error_of(ExitCode::capture, [&] { header(); });
+        return error_of(ErrorKind::capture, [&] { header(); });
     }
 
     TemporaryFolder folder_;
@@ -205,7 +205,7 @@ protected:
 TEST_F(RoleFileWindows, OfAnotherSizeAreRefusedWithBoth) {
     write("color.exr", "R", {0, 0, 15, 7}, {0, 0, 15, 7});
     write("z.exr", "Z", {0, 0, 7, 3}, {0, 0, 7, 3});
-    const std::string message = error_of(ExitCode::capture, [&] { depth(); });
+    const std::string message = error_of(ErrorKind::capture, [&] { depth(); });
     EXPECT_NE(
         message.find("z.exr: the role 'depth' has a display window of 8 x 4 px at (0, 0), but that of "),
         std::string::npos)

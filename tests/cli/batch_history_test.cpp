@@ -1,4 +1,5 @@
 // What becomes of history where a frame in the middle cannot be rendered.
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 #include "tests/cli/native_effect.h"
 

@@ -4,6 +4,7 @@
 #include <regex>
 #include <thread>
 
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

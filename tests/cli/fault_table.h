@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"
 

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "framework/batch/process_codes.h"
 #include "tests/cli/fault_table.h"
 #include "tests/real_captures.h"
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "framework/file/png_file.h"
 #include "framework/inspect/frame_sheet.h"
 #include "tests/cli/command.h"

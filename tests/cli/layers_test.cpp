@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "framework/base/atomic_file.h"
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

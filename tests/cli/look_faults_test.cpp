@@ -1,5 +1,6 @@
 // Words and documents that are wrong. Every row runs without a usable GL, so that exit code 2 also says that
 // no context was asked for.
+#include "framework/batch/process_codes.h"
 #include "tests/cli/fault_table.h"
 
 namespace aftershade::test {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/batch/process_codes.h"
 #include "framework/file/png_file.h"
 #include "tests/cli/batch_work.h"
 #include "tests/mixed_frames.h"

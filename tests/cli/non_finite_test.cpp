@@ -2,6 +2,7 @@
 #include <cmath>
 #include <regex>
 
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

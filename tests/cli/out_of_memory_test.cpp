@@ -1,4 +1,5 @@
 // A limit of the address space, as farms set it: a picture or exit 7, never a crash.
+#include "framework/batch/process_codes.h"
 #include "tests/backends.h"
 #include "tests/cli/batch_work.h"
 

@@ -4,6 +4,7 @@
 #include <regex>
 #include <utility>
 
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 #include "tests/cli/small_disk.h"
 

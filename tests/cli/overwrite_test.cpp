@@ -1,6 +1,7 @@
 // No verb writes over what it reads, by whatever path, and none has begun by then.
 #include <filesystem>
 
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "framework/batch/process_codes.h"
 #include "framework/file/png_file.h"
 #include "tests/cli/command.h"
 #include "tests/synthetic_capture.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "framework/file/png_file.h"
 #include "tests/backends.h"
 #include "tests/cli/command.h"

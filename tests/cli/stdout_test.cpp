@@ -1,4 +1,5 @@
 // A standard output that takes nothing, for every verb that prints to it.
+#include "framework/batch/process_codes.h"
 #include "tests/cli/batch_work.h"
 
 namespace aftershade::test {

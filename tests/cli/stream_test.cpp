@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "framework/batch/process_codes.h"
 #include "framework/file/png_file.h"
 #include "tests/cli/batch_work.h"
 

@@ -33,7 +33,7 @@ std::string failure(NativeEffect& effect, const NativeFrame& frame) {
     try {
         effect.prepare(frame);
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::effect);
+        EXPECT_EQ(error.kind(), ErrorKind::effect);
         return error.what();
     }
     return "no failure";

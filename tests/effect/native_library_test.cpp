@@ -21,7 +21,7 @@ std::string refusal(const fs::path& file) {
     try {
         NativeLibrary::open(file);
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::effect);
+        EXPECT_EQ(error.kind(), ErrorKind::effect);
         return error.what();
     }
     ADD_FAILURE() << file << " was taken";

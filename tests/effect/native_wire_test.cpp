@@ -59,7 +59,7 @@ TEST(NativeWire, RefusesWhatIsCutShortOrHoldsWrongNumbers) {
         try {
             take_result(in);
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::effect);
+            EXPECT_EQ(error.kind(), ErrorKind::effect);
         }
     }
 }

@@ -51,7 +51,7 @@ std::string outcome(const fs::path& path) {
         read_all(path);
         return "pixels";
     } catch (const Error& error) {
-        EXPECT_EQ(int(error.exit_code()), int(ExitCode::capture));
+        EXPECT_EQ(int(error.kind()), int(ErrorKind::capture));
         const std::string message = error.what();
         EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
         return message.substr(std::min(message.size(), path.string().size() + 2));

@@ -146,7 +146,7 @@ TEST(DeepFiles, WithAnyByteChangedEndInSamplesOrAnError) {
                 if (!file.parts()[0].is_deep()) continue;
                 (void)file.read_deep(0, std::vector<std::string>{"Z", "A"});
             } catch (const Error& error) {
-                EXPECT_EQ(int(error.exit_code()), int(ExitCode::capture)) << error.what();
+                EXPECT_EQ(int(error.kind()), int(ErrorKind::capture)) << error.what();
                 ++refused;
             }
         }

@@ -67,7 +67,7 @@ TEST(EmptyBlockTable, OfBlocksThatAreNotWholeIsRefused) {
     const std::string bytes = without_table(bytes_of(path));
     const auto fault_of = [&](const std::string& damaged) {
         write_bytes(path, damaged);
-        return error_of(ExitCode::capture,
+        return error_of(ErrorKind::capture,
                         [&] { ExrFile(path).read_floats(0, std::vector<std::string>{"Y"}); });
     };
     EXPECT_NE(fault_of(bytes.substr(0, bytes.size() - 10)).find("incomplete: 5 of 5 blocks"),
@@ -100,7 +100,7 @@ TEST(OddSampling, IsNamedWithItsChannelAndTheRemedy) {
     const int across = window.width() + 1;
     std::memcpy(&bytes[sampling], &across, 4);
     write_bytes(path, bytes);
-    const std::string fault = error_of(ExitCode::capture, [&] { ExrFile{path}; });
+    const std::string fault = error_of(ErrorKind::capture, [&] { ExrFile{path}; });
     EXPECT_NE(fault.find("channel '" + name + "' has a sampling of " + std::to_string(across) +
                          " x 1, which does not divide the data window"),
               std::string::npos)
@@ -110,7 +110,7 @@ TEST(OddSampling, IsNamedWithItsChannelAndTheRemedy) {
     const int none = 0;
     std::memcpy(&bytes[sampling], &none, 4);
     write_bytes(path, bytes);
-    EXPECT_NE(error_of(ExitCode::capture, [&] { ExrFile{path}; }).find("damaged"), std::string::npos);
+    EXPECT_NE(error_of(ErrorKind::capture, [&] { ExrFile{path}; }).find("damaged"), std::string::npos);
 }
 
 TEST(NewerCompression, ReadsBackToTheBitWhereTheLibraryHasIt) {
@@ -142,7 +142,7 @@ TEST(NewerCompression, CannotBeWrittenByAnOlderLibraryWhichSaysSo) {
     options.data_window = options.display_window = {0, 0, 1, 1};
     options.compression = "zstd";
     const std::string fault =
-        error_of(ExitCode::output, [&] { write_exr(folder / "a.exr", channels, options); });
+        error_of(ErrorKind::output, [&] { write_exr(folder / "a.exr", channels, options); });
     EXPECT_NE(fault.find("compression 'zstd' needs OpenEXR 3.5, this build has "), std::string::npos)
         << fault;
 }
@@ -158,7 +158,7 @@ TEST(NewerCompression, IsNamedWithTheRemedy) {
         std::string changed = bytes;
         changed[at] = char(method);
         write_bytes(path, changed);
-        const std::string fault = error_of(ExitCode::capture, [&] { ExrFile{path}; });
+        const std::string fault = error_of(ErrorKind::capture, [&] { ExrFile{path}; });
         EXPECT_NE(fault.find("is compressed with " + std::string(name)), std::string::npos) << fault;
         EXPECT_NE(fault.find("oiiotool"), std::string::npos) << fault;
         EXPECT_EQ(fault.find("damaged"), std::string::npos) << fault;

@@ -253,7 +253,7 @@ TEST(ExrScanLines, ArePackedAtTheLevelThatTheTextNames) {
     EXPECT_LE(sizes["zip"], sizes["zip:1"]);
     options.compression = "zip:0";
     const std::string error =
-        test::error_of(ExitCode::output, [&] { write_exr(folder / "a.exr", channels, options); });
+        test::error_of(ErrorKind::output, [&] { write_exr(folder / "a.exr", channels, options); });
     EXPECT_NE(error.find("1 (fastest) to 9"), std::string::npos) << error;
 }
 

@@ -192,7 +192,7 @@ TEST(ExrWrite, SaysWhyItCannotWriteAndLeavesNothingBehind) {
     const ExrWriteOptions options = window_of(image);
     fs::create_directory(folder / "folder.exr");
     const auto message = [&](const fs::path& path, const ExrWriteOptions& how) {
-        return test::error_of(ExitCode::output, [&] { write_floats(path, image, how); });
+        return test::error_of(ErrorKind::output, [&] { write_floats(path, image, how); });
     };
     EXPECT_EQ(message(folder / "folder.exr", options),
               (folder / "folder.exr").string() + ": is a folder, a file name is expected");
@@ -253,7 +253,7 @@ TEST(ExrWrite, KeepsTheOldFileWholeWhenTheDiskIsFullAtAnyByte) {
         {
             const FileSizeLimit limit(bytes);
             message =
-                test::error_of(ExitCode::output, [&] { write_floats(folder / "a.exr", image, options); });
+                test::error_of(ErrorKind::output, [&] { write_floats(folder / "a.exr", image, options); });
         }
         EXPECT_EQ(message, (folder / "a.exr").string() + ": cannot be written: File too large") << bytes;
         EXPECT_EQ(test::read_text(folder / "a.exr"), before);

@@ -34,11 +34,11 @@ inline Image pattern_image(int width, int height, int channels) {
 
 /// The message of the Error that `work` throws; the test fails where it throws none or one of another code.
 template <class Work>
-std::string error_of(ExitCode code, Work&& work) {
+std::string error_of(ErrorKind code, Work&& work) {
     try {
         work();
     } catch (const Error& error) {
-        EXPECT_EQ(int(error.exit_code()), int(code)) << error.what();
+        EXPECT_EQ(int(error.kind()), int(code)) << error.what();
         return error.what();
     } catch (const std::exception& error) {
         ADD_FAILURE() << "another exception: " << error.what();
@@ -61,7 +61,7 @@ inline std::string wide_png() {
 
 template <class Work>
 std::string capture_error(Work&& work) {
-    return error_of(ExitCode::capture, work);
+    return error_of(ErrorKind::capture, work);
 }
 
 inline std::vector<std::string> channel_names(const ExrPart& part) {

@@ -145,7 +145,7 @@ TEST(PngFile, LeavesNothingBehindWhenItCannotBeWritten) {
     const Image image = test::pattern_image(4, 4, 3);
     fs::create_directory(folder / "folder.png");
     const auto message = [&](const fs::path& path) {
-        return test::error_of(ExitCode::output, [&] { write_png(path, image); });
+        return test::error_of(ErrorKind::output, [&] { write_png(path, image); });
     };
     EXPECT_EQ(message(folder / "folder.png"),
               (folder / "folder.png").string() + ": is a folder, a file name is expected");
@@ -193,7 +193,7 @@ TEST(PngFile, OfAPaletteIsRefusedWhereAPixelHasAColourThatThePaletteLacks) {
     EXPECT_EQ(image.at(0, 0, 2), 0x30 / 255.0f);
     EXPECT_EQ(image.at(2, 0, 0), 0x40 / 255.0f);
     write(2);
-    EXPECT_NE(test::error_of(ExitCode::capture, [&] { read_png(folder / "p.png"); }).find("palette"),
+    EXPECT_NE(test::error_of(ErrorKind::capture, [&] { read_png(folder / "p.png"); }).find("palette"),
               std::string::npos);
 }
 

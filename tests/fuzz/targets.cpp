@@ -78,7 +78,7 @@ void refused_or_read(Read read) {
         read();
     } catch (const Error& error) {
         if (std::strlen(error.what()) == 0) broken("a refusal has a message");
-        if (error.exit_code() != ExitCode::capture && error.exit_code() != ExitCode::usage)
+        if (error.kind() != ErrorKind::capture && error.kind() != ErrorKind::usage)
             broken("a document or a file of the user is at fault, and nothing else");
     } catch (const std::bad_alloc&) {
         broken("sizes are limited before anything is allocated");
@@ -327,7 +327,7 @@ void plugin(std::string_view bytes) {
         try {
             take();
         } catch (const Error& error) {
-            if (error.exit_code() != ExitCode::effect) broken("a plug-in is at fault, and nothing else");
+            if (error.kind() != ErrorKind::effect) broken("a plug-in is at fault, and nothing else");
         }
     };
     refused([&] {
@@ -395,7 +395,7 @@ void edit(std::string_view bytes) {
         Diagnostics faults;
         return text.size() <= kMaxDocumentBytes && parse_document(text, "look.json", faults);
     };
-    static const std::string look = read_text_file(kSources / "tests/schema/look.json", ExitCode::usage);
+    static const std::string look = read_text_file(kSources / "tests/schema/look.json", ErrorKind::usage);
     std::string text = look;
     for (const Json& each : edits)
         refused_or_read([&] {

@@ -52,7 +52,7 @@ TEST_P(ContextOn, DrawsAPutOffSelfTestBeforeItsFirstDrawUntilItPassesOnce) {
             two_drawn(late);
             ADD_FAILURE() << "no error";
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::gl);
+            EXPECT_EQ(error.kind(), ErrorKind::gl);
             EXPECT_EQ(std::string(error.what()).substr(0, 12), "self-test on") << error.what();
         }
     }
@@ -179,7 +179,7 @@ TEST(Context, RefusesWithEveryBackendTriedAndItsReason) {
         const Context context(Backend::egl);
         FAIL() << "made a context";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::gl);
+        EXPECT_EQ(error.kind(), ErrorKind::gl);
         EXPECT_EQ(std::string(error.what()), "no usable GL\n  egl: " + why_not(Backend::egl));
     }
 }

@@ -21,7 +21,7 @@ TEST_P(ProgramOn, ReportsTheLineOfAShaderError) {
         fragment(source);
         FAIL() << "compiled";
     } catch (const ShaderError& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::effect);
+        EXPECT_EQ(error.kind(), ErrorKind::effect);
         EXPECT_EQ(error.stage(), "fragment");
         ASSERT_FALSE(error.messages().empty());
         EXPECT_EQ(error.messages()[0].line, 4);  // one more than in `source`: #version comes first

@@ -1,5 +1,6 @@
 // Wrong use fails by an Error with a kind, a message and a place, and the objects stay usable.
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "aftershade/host.h"
+#include "framework/file/exr_file.h"
 #include "tests/host/host_setup.h"
 #include "tests/temporary_folder.h"
 
@@ -40,6 +42,17 @@ struct Misuse {
 };
 
 using Kind = ErrorKind;
+
+std::filesystem::path write_odd_channel(const std::filesystem::path& path) {
+    const aftershade::Image stored(8, 8, 1);
+    aftershade::ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, 7, 7};
+    const std::vector<aftershade::ExrOutputChannel> channels = {
+        {"odd", aftershade::PixelType::float32, &stored, 0}};
+    aftershade::write_exr(path, channels, options);
+    return path;
+}
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Misuse> misuses_of_documents() {
@@ -53,6 +66,9 @@ std::vector<Misuse> misuses_of_documents() {
                                {.name = "mine"});
          },
          Kind::document, "did you mean 'bokeh'", "mine", 2},
+        {"an effect like no other",
+         [](Bench& b) { b.host.parse_look(R"({"aftershade": 1, "steps": [{"effect": "xxxxxxxxxxxxxx"}]})"); },
+         Kind::document, "effect_paths names a folder of further effects", "look text", 1},
         {"an unknown parameter in a look",
          [](Bench& b) {
              b.host.parse_look(
@@ -251,6 +267,21 @@ std::vector<Misuse> misuses_of_hosts() {
              Capture::read(b.host, b.folder / "text.exr");
          },
          Kind::capture, "text.exr", ""},
+        {"a file whose channels no profile names",
+         [](Bench& b) { Capture::read(b.host, write_odd_channel(b.folder / "odd.exr")); }, Kind::capture,
+         "(name one with profile, or name the channels of each role", ""},
+        {"a file without what the look reads",
+         [](Bench& b) {
+             b.look.render(b.capture).write(b.folder / "color.exr");
+             b.look.render(b.look.read(b.folder / "color.exr"));
+         },
+         Kind::capture, "needs the role 'depth'", ""},
+        {"a history file that is none",
+         [](Bench& b) {
+             write_file(b.folder / "history", "no history");
+             b.look.session().load_history(b.folder / "history");
+         },
+         Kind::usage, "not a history file of save_history()", ""},
         {"an unknown profile", [](Bench& b) { Capture::read(b.host, "x.exr", {.profile = "blendr"}); },
          Kind::usage, "did you mean 'blender'", "CaptureOptions::profile"},
         {"a frame that the sequence has not",

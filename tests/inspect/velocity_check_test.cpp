@@ -312,7 +312,7 @@ TEST(VelocityCheck, FramesOfTwoSizesAreAnError) {
         check_velocity(claim_velocity(pair));
         FAIL();
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(error.kind(), ErrorKind::capture);
         EXPECT_NE(std::string(error.what()).find("10x10"), std::string::npos) << error.what();
     }
 }

@@ -90,7 +90,7 @@ TEST_F(ValueForms, DepthThatIsNotThereIsAnErrorOfTheCapture) {
             reach(value, capture);
             ADD_FAILURE() << value;
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::capture);
+            EXPECT_EQ(error.kind(), ErrorKind::capture);
             EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
         }
     }

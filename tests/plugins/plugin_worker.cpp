@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "framework/base/error.h"
+#include "framework/batch/process_codes.h"
 #include "framework/effect/native/native_effect.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/native/native_process.h"
@@ -131,7 +132,7 @@ int main(int count, char** arguments) try {
     return code;
 } catch (const aftershade::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
-    return int(error.exit_code());
+    return int(aftershade::ExitCode::effect);
 } catch (const std::bad_alloc&) {
     std::fputs("out of memory\n", stderr);
     return 5;

@@ -396,7 +396,7 @@ TEST(Pipes, AreRefusedWhereHistoriesAreReadAndDoNotWait) {
         read_history(folder / "history");
         ADD_FAILURE() << "a pipe was read";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::usage);
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
         EXPECT_NE(std::string(error.what()).find("is not a regular file"), std::string::npos) << error.what();
     }
     std::string fault;

@@ -71,7 +71,7 @@ std::string refusal(const std::function<void()>& read) {
         read();
         return "nothing";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(error.kind(), ErrorKind::capture);
         return error.what();
     }
 }

@@ -90,7 +90,7 @@ TEST_F(Compile, SaysThatAStepIsDisabledWhereItIsNamed) {
                       {{"tint.x=1"}, {"tint.color"}});
     const std::string message = ": error: the step 'tint' is disabled; remove its \"enabled\": false\n";
     EXPECT_EQ(bound.faults(),
-              "look:1:107" + message + "--set tint.x=1" + message + "--tap tint.color" + message);
+              "look:1:107" + message + "set tint.x=1" + message + "taps tint.color" + message);
 }
 
 TEST_F(Compile, ToldOfAFaultyStepDoesNotComplainOfEveryMentionOfIt) {
@@ -111,7 +111,7 @@ TEST_F(Compile, ListsTheRolesThatTheCaptureMustBring) {
 
 TEST_F(Compile, RefusesATapOfAnInputOrOfNothing) {
     EXPECT_EQ(Bound(effects_, look_of(R"({ "effect": "fog" })"), {{}, {"fog.depth"}}).faults(),
-              "--tap fog.depth: error: fog has no texture 'depth' (known: 'color')\n");
+              "taps fog.depth: error: fog has no texture 'depth' (known: 'color')\n");
     EXPECT_EQ(Bound(effects_, look_of(R"({ "effect": "fog" })"), {{}, {"fog.color"}}).faults(), "");
 }
 
@@ -161,7 +161,7 @@ TEST_F(Values, OfTheCaptureThatAreOutOfRangeAreRefusedUnlessTheLookGivesOne) {
         resolved(bound, focused_at(500));
         FAIL() << "no error";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(error.kind(), ErrorKind::capture);
         EXPECT_STREQ(
             error.what(),
             "in.exr: camera.focus_distance is 500, outside the range of fog.reach (set the parameter in "
@@ -183,12 +183,12 @@ TEST_F(Compile, NamesEffectRoleAndChannelsOfAMissingRole) {
                               header);
         FAIL() << "no error";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(error.kind(), ErrorKind::capture);
         EXPECT_STREQ(
             error.what(),
             "in.exr: step 'haze' (effect fog) needs the role 'depth', which the profile 'native' does not "
-            "find among the channels A, B, G, R (--role depth=FILE reads it from a file of its own; "
-            "\"channels\": {\"depth\": {\"channels\": [...]}} in capture.json names its channels)");
+            "find among the channels A, B, G, R (\"channels\": {\"depth\": {\"channels\": [...]}} in "
+            "capture.json names its channels)");
     }
     EXPECT_NO_THROW(
         require_capture_roles(Bound(effects_, look_of(R"({ "effect": "mist" })")).pipeline(), header));

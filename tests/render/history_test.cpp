@@ -125,7 +125,7 @@ protected:
             bench.renderer().load_history(file_);
             step(bench, capture);
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
             return error.what();
         }
         return "";
@@ -198,7 +198,7 @@ TEST_F(SavedHistories, ThatAreDamagedOrNoneAreRefused) {
     std::string flipped = bytes;
     flipped[bytes.size() - 40] = char(flipped[bytes.size() - 40] ^ 1);
     EXPECT_NE(refused(flipped).find("is damaged"), std::string::npos);
-    EXPECT_NE(refused("EXR").find("not a history file of --history-out"), std::string::npos);
+    EXPECT_NE(refused("EXR").find("not a history file of save_history()"), std::string::npos);
     EXPECT_EQ(refused(bytes), "") << "the whole file is taken";
 }
 

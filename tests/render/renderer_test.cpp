@@ -298,7 +298,7 @@ TEST_F(Renderer, RefusesMoreLightsThanShadersTakeOnlyForEffectsThatUseThem) {
         lit.color(capture);
         FAIL() << "17 lights were taken";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(error.kind(), ErrorKind::capture);
         EXPECT_EQ(std::string(error.what()),
                   "many.exr: step 'relight' uses the capture's lights, of which there are 17; effects take "
                   "16. Name those that count in \"lights\" of capture.json");
@@ -387,7 +387,7 @@ protected:
         } catch (const Error& thrown) {
             return thrown;
         }
-        return {ExitCode::done, "no error"};
+        return {ErrorKind::interrupted, "no error"};
     }
 };
 
@@ -398,14 +398,14 @@ TEST_F(Conditional, RunsThePassesWhoseConditionsHold) {
 
 TEST_F(Conditional, NamesStepAndOutputWhenNoPassWritesIt) {
     const Error thrown = error("none", {});
-    EXPECT_EQ(thrown.exit_code(), ExitCode::effect);
+    EXPECT_EQ(thrown.kind(), ErrorKind::effect);
     EXPECT_STREQ(thrown.what(), "step 'choose': no pass writes the output 'color' with these parameters");
 }
 
 TEST_F(Conditional, RefusesATapThatNoPassWrites) {
     const Error thrown = error("a", {{}, {"choose.extra"}});
-    EXPECT_EQ(thrown.exit_code(), ExitCode::usage);
-    EXPECT_STREQ(thrown.what(), "--tap choose.extra: no pass writes it with these parameters");
+    EXPECT_EQ(thrown.kind(), ErrorKind::usage);
+    EXPECT_STREQ(thrown.what(), "taps choose.extra: no pass writes it with these parameters");
     EXPECT_STREQ(error("b", {{}, {"choose.extra"}}).what(), "no error");
 }
 
@@ -440,7 +440,7 @@ TEST_F(Renderer, NamesTheFileTheLineAndThePassOfAFaultyShader) {
         bench.run(plain());
         FAIL() << "no error";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::effect);
+        EXPECT_EQ(error.kind(), ErrorKind::effect);
         const std::string message = error.what();
         EXPECT_TRUE(message.starts_with((effects_.path() / "wrong/main.frag").string() + ":4:")) << message;
         EXPECT_NE(message.find("colour"), std::string::npos) << message;

@@ -139,7 +139,7 @@ protected:
             const RunLock lock(pattern(name), frames, "second");
             return "";
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::output);
+            EXPECT_EQ(error.kind(), ErrorKind::output);
             return error.what();
         }
     }

@@ -40,17 +40,17 @@ TEST(CheckOutputs, AcceptsBothFormatsInAnyCase) {
 
 TEST(CheckOutputs, ListsEveryFault) {
     EXPECT_EQ(faults({{"a.tif", "b"}, {"colour", "depth", "depth"}}, sequence_of("in_####.exr", {1, 2})),
-              "-o a.tif: error: the format '.tif' is not known; outputs end in .exr or .png\n"
-              "-o a.tif: error: 2 frames cannot share one file; write the number as #### or %04d\n"
-              "-o b: error: the format '' is not known; outputs end in .exr or .png\n"
-              "-o b: error: 2 frames cannot share one file; write the number as #### or %04d\n"
-              "--output-roles colour: error: not a role; did you mean 'color'?\n"
-              "--output-roles depth: error: this role is named twice\n");
+              "path a.tif: error: the format '.tif' is not known; outputs end in .exr or .png\n"
+              "path a.tif: error: 2 frames cannot share one file; write the number as #### or %04d\n"
+              "path b: error: the format '' is not known; outputs end in .exr or .png\n"
+              "path b: error: 2 frames cannot share one file; write the number as #### or %04d\n"
+              "roles colour: error: not a role; did you mean 'color'?\n"
+              "roles depth: error: this role is named twice\n");
 }
 
 TEST(CheckOutputs, RefusesTwoPatternsForOneFile) {
     EXPECT_EQ(faults({{"a_####.exr", "./a_%04d.exr"}}, sequence_of("in_####.exr", {1, 2})),
-              "-o ./a_%04d.exr: error: another output has this name\n");
+              "path ./a_%04d.exr: error: another output has this name\n");
 }
 
 TEST(CheckOutputs, RefusesAnInputOfAnyFrameAndByAnyPath) {
@@ -137,7 +137,7 @@ TEST_F(Write, NamesARoleThatIsNowhere) {
         write({"out.exr"}, {"color", "velocity"});
         FAIL() << "no error";
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::capture);
+        EXPECT_EQ(error.kind(), ErrorKind::capture);
         EXPECT_STREQ(error.what(),
                      "synthetic: the role 'velocity', requested in the output, is in neither the capture nor "
                      "the look; the capture has 'color' and 'depth'");

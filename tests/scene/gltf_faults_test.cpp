@@ -25,7 +25,7 @@ std::string fault_of(const std::string& bytes) {
     try {
         read_gltf(path);
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::usage);
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
         const std::string message = error.what();
         EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
@@ -185,7 +185,7 @@ TEST(Gltf, RefusesWhatIsNoFile) {
             read_gltf(path);
             ADD_FAILURE() << path;
         } catch (const Error& error) {
-            EXPECT_EQ(error.exit_code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
             EXPECT_TRUE(std::string(error.what()).starts_with(path.string() + ": ")) << error.what();
         }
     }

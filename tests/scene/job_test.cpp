@@ -110,15 +110,15 @@ TEST(Job, RefusesFileNumbersThatNoRangeCanName) {
     job.frames = {1, 976561};
     EXPECT_EQ(faults(scene, job), "");
     job.frames = {1, 976562};
-    EXPECT_NE(faults(scene, job).find("--subframes: error: file numbers"), std::string::npos);
+    EXPECT_NE(faults(scene, job).find("subframes: error: file numbers"), std::string::npos);
     job.frames = {-999999999};
-    EXPECT_NE(faults(scene, job).find("--subframes: error: file numbers"), std::string::npos);
+    EXPECT_NE(faults(scene, job).find("subframes: error: file numbers"), std::string::npos);
 }
 
 TEST(Job, RefusesAFolderWithoutAName) {
     Diagnostics diagnostics;
     check_job(scene_of(kBall), Job{}, diagnostics);
-    EXPECT_NE(faults_of(diagnostics).find("--output: error: names no folder"), std::string::npos);
+    EXPECT_NE(faults_of(diagnostics).find("path: error: names no folder"), std::string::npos);
 }
 
 TEST(Job, RefusesTheTextureSpaceOfAMeshThatHasNone) {
@@ -132,19 +132,19 @@ TEST(Job, RefusesTheTextureSpaceOfAMeshThatHasNone) {
     Mesh& mesh = scene.meshes.back();
     mesh.vertices.resize(3);
     mesh.triangles = {{0, 1, 2}};
-    EXPECT_NE(faults(scene, job).find("--object: error: no triangle"), std::string::npos);
+    EXPECT_NE(faults(scene, job).find("object: error: no triangle"), std::string::npos);
     mesh.vertices[1].uv = {1, 0};
     mesh.vertices[2].uv = {0, 1};
     EXPECT_EQ(faults(scene, job), "");
     for (Vertex& vertex : mesh.vertices) vertex.uv += glm::dvec2(0, 1);
-    EXPECT_NE(faults(scene, job).find("--object: error: no triangle"), std::string::npos);
+    EXPECT_NE(faults(scene, job).find("object: error: no triangle"), std::string::npos);
 }
 
 TEST(Job, RefusesJitterInTextureSpace) {
     Job job;
     job.texture_object = 0;
     job.jitter = true;
-    EXPECT_NE(faults(scene_of(kBall), job).find("--jitter"), std::string::npos);
+    EXPECT_NE(faults(scene_of(kBall), job).find("jitter: error: "), std::string::npos);
 }
 
 TEST(Job, WritesNoDocumentOfNoFrames) {

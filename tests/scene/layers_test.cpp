@@ -157,7 +157,7 @@ TEST_F(SceneLayerFiles, AreRefusedWhereTheyMeanNothing) {
     job.deep = true;
     job.layers = 2;
     check_job(ball_before_wall(), job, diagnostics);
-    EXPECT_NE(faults_of(diagnostics).find("--layers: error: is not for --deep"), std::string::npos)
+    EXPECT_NE(faults_of(diagnostics).find("layers: error: is not for deep"), std::string::npos)
         << faults_of(diagnostics);
 }
 

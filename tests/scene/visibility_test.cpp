@@ -264,8 +264,7 @@ TEST(ShadingGrids, RefuseMoreIdsThanASetOf128MiBHolds) {
         const ShadingGrids grids(renderer, 1, {.rate = 4});
         FAIL() << grids.id_count();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("choose a lower --shading-rate or --size"),
-                  std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("choose a lower shading_rate or size"), std::string::npos)
             << error.what();
     }
 }

@@ -120,7 +120,7 @@ std::string judge_capture(const std::string& text) {
         open_sequence((folder / "capture.json").string(), diagnostics);
     } catch (const Error& error) {
         // No such files: the document itself is sound.
-        if (error.exit_code() != ExitCode::capture) return error.what();
+        if (error.kind() != ErrorKind::capture) return error.what();
     }
     return first_fault(diagnostics);
 }

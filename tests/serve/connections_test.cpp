@@ -57,7 +57,7 @@ TEST(Responses, ToAFaultSayWhetherItIsOneOfTheProgram) {
     EXPECT_NE(fault_response(std::out_of_range("map::at"))
                   .body.find("a fault of the program itself: map::at; please report it"),
               std::string::npos);
-    EXPECT_EQ(fault_response(Error(ExitCode::capture, "f.exr: no such file")).body,
+    EXPECT_EQ(fault_response(Error(ErrorKind::capture, "f.exr: no such file")).body,
               error_response(500, "f.exr: no such file").body);
 }
 

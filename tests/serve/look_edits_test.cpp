@@ -227,12 +227,12 @@ TEST(LookModel, HoldsTwoHundredRandomEditsAndUndoesThemToTheFirstByte) {
         }
         EXPECT_GT(changes, 100);
         model.save();
-        EXPECT_EQ(read_text_file(path, ExitCode::usage), model.text());
+        EXPECT_EQ(read_text_file(path, ErrorKind::usage), model.text());
         for (int i = 0; i < changes; ++i) model.undo();
         EXPECT_EQ(model.text(), kLook);
         EXPECT_THROW(model.undo(), Refusal);
         for (int i = 0; i < changes; ++i) model.redo();
-        EXPECT_EQ(read_text_file(path, ExitCode::usage), model.text());
+        EXPECT_EQ(read_text_file(path, ErrorKind::usage), model.text());
     }
 }
 
@@ -249,7 +249,7 @@ TEST(LookModel, NeverWritesWhereItOnlyReadsNorOverAnotherProgramsChange) {
     EXPECT_THROW(writer.edit(1, edits), Refusal) << "the revision is old";
     write_text_file(path, "{}");
     EXPECT_THROW(writer.save(), Refusal);
-    EXPECT_EQ(read_text_file(path, ExitCode::usage), "{}");
+    EXPECT_EQ(read_text_file(path, ErrorKind::usage), "{}");
 }
 
 TEST(LookModel, LosesNoEditWhereTwoSaveAtOnce) {
@@ -281,7 +281,7 @@ TEST(LookModel, LosesNoEditWhereTwoSaveAtOnce) {
             edit_and_save(second, 8);
         }
         ASSERT_EQ(std::pair(saved, refused), std::pair(1, 1)) << "round " << round;
-        ASSERT_EQ(read_text_file(path, ExitCode::usage), text);
+        ASSERT_EQ(read_text_file(path, ErrorKind::usage), text);
     }
 }
 

@@ -135,8 +135,8 @@ TEST_P(LightOn, IsWholeOrSaysThatGlEndsItsLoopsEarly) {
         const Pictures both = pictures(context(), room_under(lights), 1, 1, kMaxBufferBytes, {32, 18});
         EXPECT_LT(other_pixels(both), 0.001);
     } catch (const Error& error) {
-        EXPECT_EQ(error.exit_code(), ExitCode::effect);
-        EXPECT_NE(std::string(error.what()).find("choose --visibility-on cpu"), std::string::npos)
+        EXPECT_EQ(error.kind(), ErrorKind::effect);
+        EXPECT_NE(std::string(error.what()).find("choose visibility_on cpu"), std::string::npos)
             << error.what();
     }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/document/grammar_schema.h"
 #include "framework/document/param_grammar.h"
@@ -187,9 +188,9 @@ Block statistic_block() {
     return {
         .name = "statistic",
         .thing = "statistic '{}'",
-        .doc =
-            "A number of each frame for `--telemetry`. A pass whose textures only telemetry or a tap needs "
-            "does not run otherwise.",
+        .doc = "A number of each frame for `" + spelled(Option::telemetry) +
+               "`. A pass whose textures only telemetry or a tap needs "
+               "does not run otherwise.",
         .keys = {
             required("of", channel_form(), "Channel to summarise: count, sum, mean, deviation, extremes."),
             optional("where", channel_form(),
@@ -235,7 +236,8 @@ Block warmup_block() {
             .thing = "'warmup'",
             .doc =
                 "Frames that a chunk of a sequence renders first, without writing them, because it starts "
-                "without history. `aftershade check LOOK --warmup CAPTURE` measures both numbers.",
+                "without history. `aftershade check LOOK " +
+                spelled(Option::warmup, "CAPTURE") + "` measures both numbers.",
             .keys = {required("frames", integer(0, kMaxWarmupFrames), "Number of frames to render first."),
                      required("error", number({.min = 0}),
                               "Remaining difference from an uncut run: the 99th percentile over the picture, "

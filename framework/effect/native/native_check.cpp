@@ -33,7 +33,7 @@ const std::string& host_version() {
 }
 
 [[noreturn]] void refuse(const std::string& place, const std::string& reason) {
-    throw Error(ExitCode::effect, place + ": " + reason);
+    throw Error(ErrorKind::effect, place + ": " + reason);
 }
 
 /// The fields that both sides know; those that the other lacks stay zero.

@@ -35,7 +35,7 @@ struct NativeEffect::Impl {
 
     [[noreturn]] void fail(const std::string& text) const {
         const std::string& contact = library->contact();
-        throw Error(ExitCode::effect,
+        throw Error(ErrorKind::effect,
                     place() + text + (contact.empty() ? "" : " (contact: " + contact + ")"));
     }
 

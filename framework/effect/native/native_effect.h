@@ -17,8 +17,8 @@ struct NativeLibraryEffect;
 class NativeEffect {
 public:
     /// Finds the effect and makes an instance. `status`, which may be null, is notified when the plug-in's
-    /// code runs and must outlive the effect. Throws Error(ExitCode::effect) as NativeRegistry::find does, or
-    /// where the plug-in makes no instance.
+    /// code runs and must outlive the effect. Throws Error(ErrorKind::effect) as NativeRegistry::find does,
+    /// or where the plug-in makes no instance.
     NativeEffect(NativeRegistry& registry, NativeDeclaration declaration, std::string step,
                  StatusWriter* status = nullptr);
     /// An effect that `library` offers.
@@ -28,9 +28,9 @@ public:
     NativeEffect(NativeEffect&&) noexcept;
     NativeEffect& operator=(NativeEffect&&) noexcept;
 
-    /// Throws Error(ExitCode::effect) naming step, library and frame with every fault: what the plug-in said,
-    /// names that are not declared, values out of range, declared ones that were not set, an exception. The
-    /// effect can be used again afterwards.
+    /// Throws Error(ErrorKind::effect) naming step, library and frame with every fault: what the plug-in
+    /// said, names that are not declared, values out of range, declared ones that were not set, an exception.
+    /// The effect can be used again afterwards.
     NativeResult prepare(const NativeFrame& frame);
     /// History was dropped. Does nothing where the plug-in takes no notice.
     void reset();

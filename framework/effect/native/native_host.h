@@ -51,9 +51,9 @@ auto call_plugin(const std::string& what, Call&& call) {
     try {
         return call();
     } catch (const std::exception& exception) {
-        throw Error(ExitCode::effect, what + " threw an exception: " + exception.what());
+        throw Error(ErrorKind::effect, what + " threw an exception: " + exception.what());
     } catch (...) {
-        throw Error(ExitCode::effect, what + " threw an exception of a type other than std::exception");
+        throw Error(ErrorKind::effect, what + " threw an exception of a type other than std::exception");
     }
 }
 

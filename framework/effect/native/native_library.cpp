@@ -39,16 +39,16 @@ NativeLibrary::~NativeLibrary() {
 std::shared_ptr<NativeLibrary> NativeLibrary::open(const fs::path& path) {
     std::error_code failure;
     if (!fs::is_regular_file(path, failure))
-        throw Error(ExitCode::effect, path.string() + ": no such file; expected a shared library");
+        throw Error(ErrorKind::effect, path.string() + ": no such file; expected a shared library");
     // An absolute path, for dlopen searches the system's folders for a name without a slash.
     void* handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle)
-        throw Error(ExitCode::effect,
+        throw Error(ErrorKind::effect,
                     path.string() + ": cannot be loaded as a shared library: " + last_dl_error());
     const std::shared_ptr<NativeLibrary> library(new NativeLibrary(handle, path.string()));
     const void* entry = dlsym(handle, kEntryName);
     if (!entry)
-        throw Error(ExitCode::effect,
+        throw Error(ErrorKind::effect,
                     path.string() + ": exports no symbol '" + kEntryName +
                         "'; define it as framework/plugin/aftershade_plugin.h shows, or take "
                         "the file out of the plug-in folder");
@@ -79,7 +79,7 @@ void NativeLibrary::start(const aftershade_library& entry) {
     if (checked.init) {
         if (!call_plugin(place_ + ": init", [&] { return checked.init(host_->get()); })) {
             const std::string text = host_->take_error();
-            throw Error(ExitCode::effect,
+            throw Error(ErrorKind::effect,
                         place_ + ": the library '" + checked.name + "' " + checked.version +
                             " refused to start: " + (text.empty() ? "no reason given" : text));
         }
@@ -90,16 +90,17 @@ void NativeLibrary::start(const aftershade_library& entry) {
 
 void NativeLibrary::list_effects(const aftershade_library& library) {
     if (library.factory_count > kMaxFactories)
-        throw Error(ExitCode::effect, place_ + ": factory_count is " + std::to_string(library.factory_count) +
-                                          ", above the limit " + std::to_string(kMaxFactories));
+        throw Error(ErrorKind::effect, place_ + ": factory_count is " +
+                                           std::to_string(library.factory_count) + ", above the limit " +
+                                           std::to_string(kMaxFactories));
     for (std::uint32_t index = 0; index < library.factory_count; ++index) {
         const aftershade_factory* found =
             call_plugin(place_ + ": get_factory", [&] { return library.get_factory(index); });
         const aftershade_factory factory = checked_factory(found, place_);
         const auto same = [&](const Effect& effect) { return effect.id == factory.effect_id; };
         if (std::any_of(effects_.begin(), effects_.end(), same))
-            throw Error(ExitCode::effect, place_ + ": offers the effect '" + factory.effect_id +
-                                              "' twice; give each its own id");
+            throw Error(ErrorKind::effect, place_ + ": offers the effect '" + factory.effect_id +
+                                               "' twice; give each its own id");
         effects_.push_back({factory.effect_id, factory.effect_version, found});
     }
 }

@@ -28,8 +28,8 @@ struct StaticNativeLibrary {
 std::span<const StaticNativeLibrary> shipped_native_libraries();
 
 /// The entry of a library by value: fields that an older minor lacks are null. The pointers stay the
-/// library's. Throws Error(ExitCode::effect) naming `place`, what was found and what this host takes: another
-/// major, a struct that is smaller than ABI 1.0's, no way to make instances.
+/// library's. Throws Error(ErrorKind::effect) naming `place`, what was found and what this host takes:
+/// another major, a struct that is smaller than ABI 1.0's, no way to make instances.
 aftershade_library checked_library(const aftershade_library& entry, const std::string& place);
 /// The same for what a library's get_factory and an effect's create return, which may be null.
 aftershade_factory checked_factory(const aftershade_factory* factory, const std::string& place);
@@ -47,7 +47,7 @@ class NativeLibrary {
 public:
     using Effect = NativeLibraryEffect;
 
-    /// Loads a shared library with RTLD_NOW | RTLD_LOCAL and calls its init. Throws Error(ExitCode::effect)
+    /// Loads a shared library with RTLD_NOW | RTLD_LOCAL and calls its init. Throws Error(ErrorKind::effect)
     /// with the file and the reason: not a library, no entry, another ABI, init failed.
     static std::shared_ptr<NativeLibrary> open(const std::filesystem::path& path);
     /// The same for a library that is linked into the executable.
@@ -106,16 +106,16 @@ public:
                             std::span<const StaticNativeLibrary> linked = shipped_native_libraries(),
                             StatusWriter* status = nullptr, std::shared_ptr<NativeProcess> process = nullptr);
 
-    /// Throws Error(ExitCode::effect) where no library offers `id` (naming the folders searched and the
+    /// Throws Error(ErrorKind::effect) where no library offers `id` (naming the folders searched and the
     /// libraries that were refused), where two do (naming both), or where its version is not `version`,
-    /// effect.json's. Throws Error(ExitCode::usage) where a folder cannot be read.
+    /// effect.json's. Throws Error(ErrorKind::usage) where a folder cannot be read.
     const Entry& find(const std::string& id, const std::string& version);
     /// Ids offered, sorted. Throws as `find` does for folders.
     std::vector<std::string> ids();
     /// Libraries that could not be used; the others still are. For warnings. Throws as `find` does for
     /// folders.
     const std::vector<Refusal>& refusals();
-    /// After the effects have ended: throws Error(ExitCode::effect) where `destroy` of one of them failed,
+    /// After the effects have ended: throws Error(ErrorKind::effect) where `destroy` of one of them failed,
     /// crashed, ended the process or took too long. [effects in this process cannot be killed]
     void require_ends();
     /// nullptr: this process.

@@ -18,6 +18,7 @@
 
 #include "framework/base/child_process.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/document/units.h"
 #include "framework/effect/native/native_call.h"
@@ -78,7 +79,7 @@ NativeResult checked(const NativeDeclaration& declaration, NativeResult&& untrus
     output->set_warm_up_frames(output, untrusted.warm_up_frames);
     output->set_overscan(output, untrusted.overscan_px);
     taken.require_everything();
-    if (!faults.empty()) throw Error(ExitCode::effect, what + ": " + faults.text());
+    if (!faults.empty()) throw Error(ErrorKind::effect, what + ": " + faults.text());
     NativeResult result = taken.take();
     result.log = std::move(untrusted.log);
     return result;
@@ -128,8 +129,8 @@ struct NativeProcess::Impl {
 
     void start() {
         if (++starts > kMostStarts)
-            throw Error(ExitCode::effect, "plug-ins ended their process " + std::to_string(kMostStarts) +
-                                              " times; it is not started again");
+            throw Error(ErrorKind::effect, "plug-ins ended their process " + std::to_string(kMostStarts) +
+                                               " times; it is not started again");
         auto [mine, theirs] = make_socket_pair();
         Pipe prints = make_pipe();
         ChildCommand command;
@@ -237,7 +238,7 @@ struct NativeProcess::Impl {
         if (left <= 0)
             refuse(place,
                    "did not finish within " + format_number(options.timeout.count()) + " s and was killed",
-                   "; give it longer with --plugin-timeout");
+                   advice("; give it longer with ", Option::plugin_timeout, "", ""));
         std::array<pollfd, 2> wanted = {{{stream.get(), what, 0}, {output.get(), POLLIN, 0}}};
         poll(wanted.data(), wanted.size(), int(std::min<std::int64_t>(left, 1000)));
         if (wanted[1].revents) read_output();
@@ -254,7 +255,7 @@ struct NativeProcess::Impl {
     [[noreturn]] void refuse(const WorkStatus& place, const std::string& why,
                              const std::string& remedy = "") {
         finish(true);
-        throw Error(ExitCode::effect, subject(place) + " " + why + place_text(place) + remedy);
+        throw Error(ErrorKind::effect, subject(place) + " " + why + place_text(place) + remedy);
     }
 
     [[noreturn]] void ended(const WorkStatus& place) {
@@ -264,8 +265,10 @@ struct NativeProcess::Impl {
         else if (WTERMSIG(status) == SIGKILL) why = "was killed " + signal_text(SIGKILL);
         else why = "crashed " + signal_text(WTERMSIG(status));
         const bool lacks_memory = place.plugin.empty() && options.memory_bytes;
-        throw Error(ExitCode::effect, subject(place) + " " + why + place_text(place) +
-                                          (lacks_memory ? "; give it more memory with --plugin-memory" : ""));
+        throw Error(
+            ErrorKind::effect,
+            subject(place) + " " + why + place_text(place) +
+                (lacks_memory ? advice("; give it more memory with ", Option::plugin_memory, "", "") : ""));
     }
 
     static std::string subject(const WorkStatus& place) {
@@ -289,7 +292,7 @@ struct NativeProcess::Impl {
         } catch (const Error&) {
             refuse(place, "broke into the host's own talk with its process");
         }
-        throw Error(ExitCode::effect, printable(*fault));
+        throw Error(ErrorKind::effect, printable(*fault));
     }
     void answer(const WireWriter& request, const WorkStatus& place) {
         answer(request, place, [](WireReader&) { return true; });
@@ -298,7 +301,7 @@ struct NativeProcess::Impl {
     const Instance& instance(int number) const {
         const auto found = instances.find(number);
         if (found == instances.end())
-            throw Error(ExitCode::effect, "the process of the plug-ins has ended with an earlier fault");
+            throw Error(ErrorKind::effect, "the process of the plug-ins has ended with an earlier fault");
         return found->second;
     }
 };

@@ -26,7 +26,7 @@ struct NativeProcessOptions {
 
 /// Starts the process with the first call, and again with the first one after it has ended; instances end
 /// with it. It has none of this process's files and few of its variables, and dies with the thread that
-/// started it. What plug-ins print goes to standard error, up to a limit. Throws Error(ExitCode::effect),
+/// started it. What plug-ins print goes to standard error, up to a limit. Throws Error(ErrorKind::effect),
 /// where a plug-in fails, crashes, ends the process or takes too long, naming it and the call.
 /// [one thread at a time]
 class NativeProcess {

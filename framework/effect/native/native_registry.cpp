@@ -4,6 +4,7 @@
 
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/effect/native/native_library.h"
 
 namespace aftershade {
@@ -13,7 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string places_searched(const std::vector<fs::path>& folders) {
-    if (folders.empty()) return "; no plug-in folder is given (--plugin-path, AFTERSHADE_PLUGIN_PATH)";
+    if (folders.empty())
+        return "; no plug-in folder is given (" + spelled(Option::plugin_path) + ", AFTERSHADE_PLUGIN_PATH)";
     std::string text = "; searched ";
     for (const fs::path& folder : folders)
         text += (&folder == &folders.front() ? "" : ", ") + folder.string();
@@ -37,7 +39,7 @@ const NativeRegistry::Entry& NativeRegistry::find(const std::string& id, const s
             "no library offers native code for the effect '" + id + "'" + places_searched(folders_);
         text += did_you_mean(id, ids());
         for (const Refusal& refusal : refusals_) text += "\n  refused: " + refusal.message;
-        throw Error(ExitCode::effect, text);
+        throw Error(ErrorKind::effect, text);
     }
     const std::vector<Entry>& entries = found->second;
     if (entries.size() > 1) {
@@ -45,14 +47,14 @@ const NativeRegistry::Entry& NativeRegistry::find(const std::string& id, const s
             "the effect '" + id + "' is offered by " + std::to_string(entries.size()) + " libraries:";
         for (const Entry& entry : entries) text += " " + entry.library->place() + ",";
         text.back() = ';';
-        throw Error(ExitCode::effect, text + " leave one of them in the plug-in folders");
+        throw Error(ErrorKind::effect, text + " leave one of them in the plug-in folders");
     }
     const Entry& entry = entries.front();
     if (entry.effect.version != version)
-        throw Error(ExitCode::effect, entry.library->place() + ": the native code of '" + id +
-                                          "' is version " + entry.effect.version +
-                                          ", its effect.json is version " + version +
-                                          "; install the two from one build");
+        throw Error(ErrorKind::effect, entry.library->place() + ": the native code of '" + id +
+                                           "' is version " + entry.effect.version +
+                                           ", its effect.json is version " + version +
+                                           "; install the two from one build");
     return entry;
 }
 
@@ -73,16 +75,15 @@ void NativeRegistry::require_ends() {
     for (const auto& [id, entries] : entries_)
         for (const Entry& entry : entries)
             if (const std::string fault = entry.library->take_end_fault(); first.empty()) first = fault;
-    if (!first.empty()) throw Error(ExitCode::effect, first);
+    if (!first.empty()) throw Error(ErrorKind::effect, first);
 }
 
 void NativeRegistry::load() {
     if (loaded_) return;
     for (const fs::path& folder : folders_)
         if (!fs::is_directory(folder))
-            throw Error(
-                ExitCode::usage,
-                folder.string() + ": no such folder of plug-ins (--plugin-path, AFTERSHADE_PLUGIN_PATH)");
+            throw Error(ErrorKind::usage, folder.string() + ": no such folder of plug-ins (" +
+                                              spelled(Option::plugin_path) + ", AFTERSHADE_PLUGIN_PATH)");
     loaded_ = true;
     for (const StaticNativeLibrary& library : linked_) add(NativeLibrary::adopt(library));
     for (const fs::path& folder : folders_) load_folder(folder);

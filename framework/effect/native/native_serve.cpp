@@ -111,7 +111,7 @@ private:
                 instances_.emplace(number, NativeEffect(opened, effect, std::move(declaration), step));
                 return;
             }
-        throw Error(ExitCode::effect,
+        throw Error(ErrorKind::effect,
                     opened->place() + ": offers no native code for '" + declaration.effect_id + "'");
     }
 

@@ -30,7 +30,7 @@ private:
     std::string bytes_;
 };
 
-/// Throws Error(ExitCode::effect) for bytes that no WireWriter wrote: they may be a plug-in's.
+/// Throws Error(ErrorKind::effect) for bytes that no WireWriter wrote: they may be a plug-in's.
 class WireReader {
 public:
     /// `bytes` must outlive this.
