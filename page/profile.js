@@ -1,5 +1,5 @@
 // A scattering profile: one that is shipped, a file, or the numbers of one of the four types; also by object.
-import { element, freshId, options } from "./elements.js";
+import { element, freshId } from "./elements.js";
 import { field } from "./number.js";
 import { objectsTable } from "./objects_table.js";
 import * as values from "./values.js";

@@ -806,11 +806,11 @@ inPage("steps through the frames and plays them", async (page) => {
   await number.press("Enter");
   assert.equal(await number.getAttribute("aria-invalid"), "true");
   await number.press("Escape");
-  await page.evaluate(
-    () =>
-      (window.frames_seen = new Set()) &&
-      window.aftershade.viewer.addEventListener("frame", () => window.frames_seen.add(window.aftershade.viewer.frame)),
-  );
+  await page.evaluate(() => {
+    const { viewer } = window.aftershade;
+    window.frames_seen = new Set();
+    viewer.addEventListener("frame", () => window.frames_seen.add(viewer.frame));
+  });
   await page.getByRole("button", { name: "Play" }).click();
   await page.waitForFunction(() => window.frames_seen.size === 2);
   await page.getByRole("button", { name: "Pause" }).click();
