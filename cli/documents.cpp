@@ -74,7 +74,7 @@ const std::vector<Document>& documents() {
     static const std::vector<Document> all = {
         {"look", schema_of_looks, {&look_block(), &look_step_block(), &look_use_block()}},
         {"capture", schema_by(capture_schema), {&capture_block(), &decoding_table()}},
-        {"effect", schema_by(effect_schema), {&effect_block()}},
+        {"effect", schema_by(effect_schema), {&effect_block(), &group_block()}},
         {"module", schema_by(module_schema), {&module_block()}},
         {"scene", schema_by(scene::scene_schema)},  // its tables are a page: scene-reference.md
         {"profile", schema_by(profile_schema), {&profile_block()}},

@@ -24,13 +24,20 @@ std::string to_string(const Place& place) {
     return place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
 }
 
+void Diagnostics::add(Severity severity, const Place& place, std::string message) {
+    if (place.copy > 0 && copies_.try_emplace(to_string(place), place.copy).first->second != place.copy)
+        return;
+    if (!place.turn.empty()) message += " (" + place.turn + ")";
+    if (severity == Severity::error) ++error_count_;
+    all_.push_back({severity, place, std::move(message)});
+}
+
 void Diagnostics::error(const Place& place, std::string message) {
-    all_.push_back({Severity::error, place, std::move(message)});
-    ++error_count_;
+    add(Severity::error, place, std::move(message));
 }
 
 void Diagnostics::warning(const Place& place, std::string message) {
-    all_.push_back({Severity::warning, place, std::move(message)});
+    add(Severity::warning, place, std::move(message));
 }
 
 void Diagnostics::print(std::ostream& out) const {

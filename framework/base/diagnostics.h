@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <ostream>
 #include <span>
@@ -19,6 +20,9 @@ struct Place {
     int line = 0;      ///< 1-based
     int column = 0;    ///< 1-based, in bytes
     std::optional<Option> option = std::nullopt;
+    /// Of what a manifest's group or `for` writes out: which copy, from 1; and the variable, "level = 3".
+    int copy = 0;
+    std::string turn = {};
 };
 
 /// What was chosen, such as "bokeh.taps=2" by Option::set.
@@ -35,7 +39,8 @@ struct Diagnostic {
     std::string message;
 };
 
-/// [one thread at a time]
+/// Of several copies of one declaration, only the first with a fault at a place reports faults there, and
+/// says its turn. [one thread at a time]
 class Diagnostics {
 public:
     void error(const Place& place, std::string message);
@@ -53,7 +58,10 @@ public:
     const std::vector<std::filesystem::path>& documents() const { return documents_; }
 
 private:
+    void add(Severity severity, const Place& place, std::string message);
+
     std::vector<Diagnostic> all_;
+    std::map<std::string, int> copies_;  // with faults, by place
     int error_count_ = 0;
     std::vector<std::filesystem::path> documents_;
 };

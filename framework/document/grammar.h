@@ -40,6 +40,7 @@
 #include "framework/base/diagnostics.h"
 #include "framework/document/document.h"
 #include "framework/document/param.h"
+#include "framework/document/schema_pieces.h"
 
 namespace aftershade::grammar {
 
@@ -94,6 +95,7 @@ struct Key {
     std::string default_text;           ///< as a document would write it; "" where there is none
     std::optional<Node> default_value;  ///< the same, parsed
     std::string of = {};                ///< for the table: which of several kinds of objects have the key
+    bool has_row = true;                ///< in the table; false where another table has it
 };
 
 Key required(std::string name, Form form, std::string doc);
@@ -219,9 +221,12 @@ Form by_kind(std::vector<Form> forms, std::string fault);
 Form with_fault(Form form, std::string fault);
 /// An object with this key is of one form, every other value of the other.
 Form by_key(std::string key, Form with, Form without);
-/// {"var": "name"} may stand for the value and for each part of it. Names are put in before the value is
-/// checked.
-Form with_variables(Form form);
+/// {"var": "name"} may stand for the value and for each part of it, or a text with "{name}". Values are put
+/// in before they are checked.
+Form with_variables(Form form, schema::Variables variables = schema::Variables::yes);
+/// A document has `written`, of which its reader makes a `form`, which is checked. Blocks of `written` alone
+/// have no tables by themselves.
+Form written_as(Form form, Form written);
 /// In tables, `type` stands for what the form would say of itself.
 Form shown_as(Form form, std::string type);
 /// What no other form says.

@@ -101,7 +101,9 @@ public:
     }
     json schema(SchemaScope& scope) const override {
         json result = {{"type", "object"}};
-        if (!names_.pattern.regex.empty()) result["propertyNames"] = {{"pattern", names_.pattern.regex}};
+        const bool has_braces = scope.variables == schema::Variables::in_braces;
+        if (const std::string& regex = names_.pattern.regex; !regex.empty())
+            result["propertyNames"] = {{"pattern", (has_braces ? R"(\{[^{}]+\}|)" : "") + regex}};
         json value = scope.of(value_);
         if (!value.empty()) result["additionalProperties"] = std::move(value);
         if (names_.min > 0) result["minProperties"] = names_.min;
@@ -272,14 +274,28 @@ protected:
 
 class WithVariables : public Wrapper {
 public:
-    using Wrapper::Wrapper;
+    WithVariables(Form form, schema::Variables variables) : Wrapper(std::move(form)), variables_(variables) {}
 
     json schema(SchemaScope& scope) const override {
-        const schema::Variables before = std::exchange(scope.variables, schema::Variables::yes);
+        const schema::Variables before = std::exchange(scope.variables, variables_);
         json result = scope.of(form_);
         scope.variables = before;
         return result;
     }
+
+private:
+    schema::Variables variables_;
+};
+
+class WrittenAs : public Wrapper {
+public:
+    WrittenAs(Form form, Form written) : Wrapper(std::move(form)), written_(std::move(written)) {}
+
+    json schema(SchemaScope& scope) const override { return written_.type().schema(scope); }
+    Words words() const override { return written_.type().words(); }
+
+private:
+    Form written_;
 };
 
 class ShownAs : public Wrapper {
@@ -337,8 +353,12 @@ Form with_fault(Form form, std::string fault) {
     return any_of({std::move(form)}, std::move(fault));
 }
 
-Form with_variables(Form form) {
-    return make_form<WithVariables>(std::move(form));
+Form with_variables(Form form, schema::Variables variables) {
+    return make_form<WithVariables>(std::move(form), variables);
+}
+
+Form written_as(Form form, Form written) {
+    return make_form<WrittenAs>(std::move(form), std::move(written));
 }
 
 Form shown_as(Form form, std::string type) {

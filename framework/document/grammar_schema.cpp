@@ -61,10 +61,13 @@ json SchemaScope::definitions() const {
 
 json SchemaScope::of(const Form& form) {
     json result = form.type().schema(*this);
-    if (variables == schema::Variables::no) return result;
+    const bool in_braces = variables == schema::Variables::in_braces;
+    if (variables == schema::Variables::no || (in_braces && result == schema::text())) return result;
+    const json variable =
+        in_braces ? json{{"type", "string"}, {"pattern", R"(\{[^{}]+\})"}} : schema::variable();
     const bool is_choice = result.size() == 1 && result.contains("anyOf");
-    if (!is_choice) return schema::any_of({std::move(result), schema::variable()});
-    if (result["anyOf"].back() != schema::variable()) result["anyOf"].push_back(schema::variable());
+    if (!is_choice) return schema::any_of({std::move(result), variable});
+    if (result["anyOf"].back() != variable) result["anyOf"].push_back(variable);
     return result;
 }
 

@@ -82,7 +82,8 @@ std::vector<Row> own_rows(const Block& block) {
     if (block.is_document)
         for (const Key& key : head_keys()) rows.push_back(row_of(key, ""));
     if (!block.selector.empty()) rows.push_back(row_of(selector_key(block), ""));
-    for (const Key& key : block.keys) add_row(rows, row_of(key, ""));
+    for (const Key& key : block.keys)
+        if (key.has_row) add_row(rows, row_of(key, ""));
     return rows;
 }
 

@@ -30,7 +30,7 @@ inline constexpr const char* kAnyUnit = "*";
 /// A number with limits; the spec's unit adds strings such as "85 mm" in any unit that converts to it.
 json quantity(const ParamSpec& spec);
 
-enum class Variables { no, yes };
+enum class Variables { no, yes, in_braces };
 /// {"var": "name"}: refers to what define_variable() puts among "$defs". Ids of effects have no capitals.
 json variable();
 void define_variable(json& definitions);

@@ -61,14 +61,12 @@ grammar::Key when_key(std::string doc, bool is_required = false);
 grammar::Key input_when_key(std::string doc);
 
 const grammar::Block& manifest_param_block();
+const grammar::Block& input_block();
 const grammar::Block& texture_block();
 const grammar::Block& buffer_block();
 const grammar::Block& tile_list_block();
 const grammar::Block& pass_block();
-const grammar::Block& group_block();
 const grammar::Block& read_block();   ///< of one read, by its name
 const grammar::Block& write_block();  ///< of one write, by its name
-/// Passes and groups of them; `fault` is said where there is none, "": there may be none.
-grammar::Form passes_form(const std::string& fault = "");
 
 }  // namespace aftershade

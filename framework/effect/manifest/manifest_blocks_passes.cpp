@@ -123,20 +123,22 @@ std::vector<Key> shader_keys() {
     const std::string bound = "'max_iterations' must be from 1 to " + std::to_string(kMaxIterations) +
                               ": llvmpipe silently ends the loops of one invocation after 65535; split the "
                               "work over a repeated pass";
-    return {required("shader", file_form("shader"),
-                     "A file in the effect's folder, or in the module's folder for a module's pass."),
-            optional("reads", reads_form(),
-                     "Default, also for `\"*\"`: [what the shaders name](#what-shaders-name)."),
-            optional("images", accesses_form(),
-                     "Access to level 0 of a texture as an image; atomics need r32ui or r32i."),
-            optional("buffers", accesses_form(),
-                     "Access to buffers; `{\"name.prev\": \"read\"}` reads the previous frame's."),
-            optional("defines", grammar::shown_as(defines_form(), "text or int by name"),
-                     "Preprocessor symbols."),
-            optional("repeat", count_form(kRepeatCount),
-                     "Run the pass this many times in a row; the shader has `pass.index` and `pass.count`."),
-            optional("max_iterations", grammar::with_fault(integer(1, kMaxIterations), bound),
-                     "Upper bound on the loop iterations of one invocation.")};
+    return {
+        optional("shader", file_form("shader"),
+                 "A file in the effect's folder, or in the module's folder for a module's pass; default: the "
+                 "pass's name with `.frag`, or `.comp` for compute."),
+        optional("reads", reads_form(),
+                 "Default, also for `\"*\"`: [what the shaders name](#what-shaders-name)."),
+        optional("images", accesses_form(),
+                 "Access to level 0 of a texture as an image; atomics need r32ui or r32i."),
+        optional("buffers", accesses_form(),
+                 "Access to buffers; `{\"name.prev\": \"read\"}` reads the previous frame's."),
+        optional("defines", grammar::shown_as(defines_form(), "text or int by name"),
+                 "Preprocessor symbols."),
+        optional("repeat", count_form(kRepeatCount),
+                 "Run the pass this many times in a row; the shader has `pass.index` and `pass.count`."),
+        optional("max_iterations", grammar::with_fault(integer(1, kMaxIterations), bound),
+                 "Upper bound on the loop iterations of one invocation.")};
 }
 
 Block draw_kind() {
@@ -207,10 +209,6 @@ Block make_pass_block() {
             .definition = "pass"};
 }
 
-Form pass_or_group_form() {
-    return grammar::by_key("passes", grammar::object(group_block), grammar::object(pass_block));
-}
-
 }  // namespace
 
 std::optional<int> pass_offset(std::string_view text) {
@@ -276,21 +274,6 @@ const Block& write_block() {
 const Block& pass_block() {
     static const Block block = make_pass_block();
     return block;
-}
-
-const Block& group_block() {
-    static const Block block{
-        .name = "group",
-        .thing = "the group of passes",
-        .doc = "Passes that share conditions. Groups may hold groups.",
-        .keys = {when_key("Conditions of all its passes, in addition to their own.", true),
-                 required("passes", passes_form("the group has no passes"), "Passes in order.")},
-        .definition = "group"};
-    return block;
-}
-
-Form passes_form(const std::string& fault) {
-    return grammar::list(pass_or_group_form(), {.min = fault.empty() ? 0 : 1, .fault = fault});
 }
 
 }  // namespace aftershade

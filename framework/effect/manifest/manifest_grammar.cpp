@@ -9,6 +9,7 @@
 #include "framework/document/schema_pieces.h"
 #include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_blocks.h"
+#include "framework/effect/manifest/manifest_groups.h"
 #include "framework/effect/param_types.h"
 #include "framework/image/camera.h"
 #include "framework/image/image_forms.h"
@@ -50,7 +51,7 @@ Form version_form() {
                  .type = "`MAJOR.MINOR.PATCH`"});
 }
 
-Block input_block() {
+Block make_input_block() {
     constexpr const char* kLayersEnd =
         "an input of a layer must be 'optional': a capture may have fewer layers";
     constexpr int kMostInputLayer = 7;
@@ -224,11 +225,9 @@ std::vector<Key> shared_keys() {
                      grammar::shown_as(grammar::named(grammar::object(manifest_param_block), "parameter"),
                                        "[parameter](params.md) by name"),
                      "Parameters that users set."),
-            optional("textures", grammar::named(grammar::object(texture_block), "texture"),
-                     "Images between passes."),
-            optional("buffers", grammar::named(grammar::object(buffer_block), "buffer"), "Arrays."),
-            optional("tiles", grammar::named(grammar::object(tile_list_block), "tile list"),
-                     "Lists of tiles that confine draws.")};
+            optional("textures", section_form("textures"), "Images between passes."),
+            optional("buffers", section_form("buffers"), "Arrays."),
+            optional("tiles", section_form("tiles"), "Lists of tiles that confine draws.")};
 }
 
 Block warmup_block() {
@@ -247,8 +246,9 @@ Block warmup_block() {
 Form reach_form() {
     constexpr const char* kFault = "'reach' is a number of px, \"all\", or a list of numbers and parameters";
     const Form px = integer(0, kMaxReachPx);
-    const Form part = grammar::by_kind({px, reference_form(schema::kSnakeCase, "name")},
-                                       "a part of 'reach' is a number of px or the name of a parameter");
+    const Form part = grammar::by_kind(
+        {px, reference_form(R"(^([1-9][0-9]? \* )?[a-z][a-z0-9_]*$)", "name, or `10 * name`")},
+        "a part of 'reach' is a number of px or the name of a parameter");
     return grammar::by_kind({px, choice({"all"}), grammar::list(part, {.min = 1})}, kFault);
 }
 
@@ -271,8 +271,7 @@ Block make_effect_block() {
                           "How far around a pixel its result depends on the inputs: [below](#reach)."),
                  optional("modules", grammar::list(module, {.unique = true}),
                           "Modules whose declarations come before the effect's own: [below](#modules)."),
-                 required("inputs", grammar::named(grammar::object(input_block()), "input"),
-                          "Images that the effect reads."),
+                 required("inputs", section_form("inputs"), "Images that the effect reads."),
                  required("outputs",
                           grammar::map(grammar::object(output_block()),
                                        {.pattern = grammar::snake_case_pattern(),
@@ -282,7 +281,8 @@ Block make_effect_block() {
                           "Images that the effect outputs.")},
         .is_document = true};
     for (Key& key : shared_keys()) block.keys.push_back(std::move(key));
-    block.keys.push_back(required("passes", passes_form("the effect has no passes"), "Passes in order."));
+    block.keys.push_back(
+        required("passes", section_form("passes", "the effect has no passes"), "Passes in order."));
     block.keys.push_back(optional("native", grammar::object(native_block()), "Values of native code."));
     block.keys.push_back(optional("telemetry",
                                   grammar::named(grammar::object(statistic_block()), "statistic"),
@@ -305,7 +305,7 @@ Block make_module_block() {
                  "Modules whose effects belong after this one's in a look; the other order is a warning.")},
         .is_document = true};
     for (Key& key : shared_keys()) block.keys.push_back(std::move(key));
-    block.keys.push_back(optional("passes", passes_form(), "Passes in order."));
+    block.keys.push_back(optional("passes", section_form("passes"), "Passes in order."));
     return block;
 }
 
@@ -313,6 +313,11 @@ Block make_module_block() {
 
 const Block& manifest_param_block() {
     static const Block block = param_block(param_types(), camera_sources);
+    return block;
+}
+
+const Block& input_block() {
+    static const Block block = make_input_block();
     return block;
 }
 

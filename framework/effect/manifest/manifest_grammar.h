@@ -13,6 +13,8 @@ namespace aftershade {
 const grammar::Block& effect_block();
 /// A module.json.
 const grammar::Block& module_block();
+/// A group of entries, for its table: of `textures`, and alike in other sections.
+const grammar::Block& group_block();
 
 /// JSON Schema of an effect.json.
 std::string effect_schema();

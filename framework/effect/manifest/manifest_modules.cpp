@@ -4,6 +4,7 @@
 
 #include "framework/base/data_path.h"
 #include "framework/effect/manifest/manifest_grammar.h"
+#include "framework/effect/manifest/manifest_groups.h"
 #include "framework/effect/manifest/manifest_parser.h"
 
 namespace aftershade {
@@ -46,7 +47,9 @@ void ManifestParser::module(const Node& item, const fs::path& glsl_folder) {
     if (std::any_of(modules_.begin(), modules_.end(), same)) return;
     const fs::path folder = glsl_folder / item.string;
     auto document = read_document(folder / kModuleFile, diagnostics_);
-    if (!document) {
+    const int errors_before = diagnostics_.error_count();
+    if (document) document = without_groups(std::move(*document), diagnostics_);
+    if (!document || diagnostics_.error_count() > errors_before) {
         lacks_modules_ = true;
         return;
     }

@@ -77,8 +77,7 @@ private:
     void copied(const Reader& reader, PassSpec& pass);
     void tile_list(const Reader::Named& declared);
     void tiles_of_texture(const Reader& reader, TileListSpec& list);
-    void pass_or_group(const Node& node, const std::vector<WhenSpec>& shared);
-    PassSpec pass(const Reader& reader, const std::vector<WhenSpec>& shared);
+    PassSpec pass(const Reader& reader);
     void shaders(const Reader& reader, PassSpec& pass);
     InstanceSpec instances(const Reader& reader);
     DispatchSpec dispatch(const Reader& reader);

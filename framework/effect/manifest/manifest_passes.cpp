@@ -7,25 +7,10 @@
 namespace aftershade {
 
 void ManifestParser::passes(const Reader& document) {
-    if (const Node* list = document.find("passes"))
-        for (const Node& node : list->items) pass_or_group(node, {});
+    for (const Reader& reader : document.objects("passes")) manifest_.passes.push_back(pass(reader));
 }
 
-/// A group is {"when": {...}, "passes": [...]}: its conditions come before those of each pass in it.
-void ManifestParser::pass_or_group(const Node& node, const std::vector<WhenSpec>& shared) {
-    if (!node.is_object()) return;
-    if (!node.find("passes")) {
-        manifest_.passes.push_back(pass(Reader(node, pass_block()), shared));
-        return;
-    }
-    const Reader group(node, group_block());
-    std::vector<WhenSpec> all = shared;
-    add_conditions(group, all);
-    if (const Node* passes = group.find("passes"))
-        for (const Node& item : passes->items) pass_or_group(item, all);
-}
-
-PassSpec ManifestParser::pass(const Reader& reader, const std::vector<WhenSpec>& shared) {
+PassSpec ManifestParser::pass(const Reader& reader) {
     PassSpec pass;
     pass.place = reader.node().place;
     pass.folder = reading_ ? reading_->spec.folder : manifest_.folder;
@@ -35,7 +20,6 @@ PassSpec ManifestParser::pass(const Reader& reader, const std::vector<WhenSpec>&
     if (reader.kind() == "compute") pass.kind = PassKind::compute;
     if (reader.kind() == "clear") pass.kind = PassKind::clear;
     if (reader.kind() == "copy") pass.kind = PassKind::copy;
-    pass.when = shared;
     add_conditions(reader, pass.when);
     if (pass.kind == PassKind::copy) {
         copied(reader, pass);
@@ -61,7 +45,8 @@ void ManifestParser::copied(const Reader& reader, PassSpec& pass) {
 
 /// What a pass that runs a shader has.
 void ManifestParser::shaders(const Reader& reader, PassSpec& pass) {
-    pass.shader = reader.text("shader");
+    const char* const ending = pass.kind == PassKind::compute ? ".comp" : ".frag";
+    pass.shader = reader.has("shader") ? reader.text("shader") : pass.name + ending;
     pass.infers_reads = read_reads(reader, pass.reads);
     pass.images = read_accesses(reader, "images");
     pass.buffers = read_accesses(reader, "buffers");

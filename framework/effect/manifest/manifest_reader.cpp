@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_check.h"
 #include "framework/effect/manifest/manifest_expand.h"
 #include "framework/effect/manifest/manifest_grammar.h"
+#include "framework/effect/manifest/manifest_groups.h"
 #include "framework/effect/manifest/manifest_parser.h"
 #include "framework/effect/param_types.h"
 
@@ -38,14 +40,19 @@ void ManifestParser::reach(const Reader& document) {
             reach.px += int(part.number);
             return;
         }
-        const ParamSpec* const spec = manifest_.find_param(part.string);
-        if (!spec && !faulty_params_.contains(part.string))
-            fault(part.place, "'reach' names '" + part.string + "', which is not a parameter" +
-                                  did_you_mean(part.string, manifest_.param_names()));
+        // "10 * radius" counts ten times.
+        const std::size_t sign = part.string.find(" * ");
+        const auto factor = sign < 3 ? parse_number(part.string.substr(0, sign)) : std::nullopt;
+        const bool is_factor = factor && *factor >= 1 &&
+                               part.string.find_first_not_of("0123456789") == sign && part.string[0] != '0';
+        const std::string name = is_factor ? part.string.substr(sign + 3) : part.string;
+        const ParamSpec* const spec = manifest_.find_param(name);
+        if (!spec && !faulty_params_.contains(name))
+            fault(part.place, "'reach' names '" + name + "', which is not a parameter" +
+                                  did_you_mean(name, manifest_.param_names()));
         else if (spec && (spec->unit != "px" || !spec->max))
-            fault(part.place,
-                  "'reach' names '" + part.string + "', which is not a parameter in px with a max");
-        reach.params.push_back(part.string);
+            fault(part.place, "'reach' names '" + name + "', which is not a parameter in px with a max");
+        reach.params.insert(reach.params.end(), is_factor ? std::size_t(*factor) : 1, name);
     };
     if (node->is_array()) std::ranges::for_each(node->items, add);
     else if (!reach.is_all) add(*node);
@@ -97,9 +104,11 @@ void ManifestParser::preset(const Member& member) {
     manifest_.presets.push_back(std::move(preset));
 }
 
-std::optional<EffectManifest> parse_manifest(const Node& node, const fs::path& folder,
+std::optional<EffectManifest> parse_manifest(const Node& written, const fs::path& folder,
                                              Diagnostics& diagnostics, const fs::path& glsl_folder) {
     const int errors_before = diagnostics.error_count();
+    const Node node = without_groups(written, diagnostics);
+    if (diagnostics.error_count() > errors_before) return std::nullopt;
     grammar::check(node, effect_block(), diagnostics);
     if (!node.is_object()) return std::nullopt;
     EffectManifest manifest;
