@@ -168,8 +168,9 @@ TEST(Architecture, OnlyTheGpuModuleCallsGl) {
 
 TEST(Architecture, NothingOutsideAnEffectsFolderNamesIt) {
     std::string ids;
-    for (const auto& entry : fs::directory_iterator(kRoot / "effects"))
-        if (entry.is_directory()) ids += (ids.empty() ? "" : "|") + entry.path().filename().string();
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / "effects"))
+        if (fs::exists(entry.path() / "effect.json"))
+            ids += (ids.empty() ? "" : "|") + entry.path().filename().string();
     ASSERT_FALSE(ids.empty());
     const std::regex any_id("\\b(" + ids + ")\\b");
     for (const char* folder : {"framework", "cli", "glsl"})

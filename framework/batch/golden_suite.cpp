@@ -17,6 +17,7 @@
 #include "framework/capture/sequence.h"
 #include "framework/document/grammar_reader.h"
 #include "framework/document/grammar_schema.h"
+#include "framework/effect/registry.h"
 
 namespace aftershade {
 
@@ -80,8 +81,11 @@ private:
         for (const fs::path& folder : folders) {
             std::set<fs::path> effects;
             if (!fs::is_directory(folder)) continue;  // told of already
-            for (const auto& entry : fs::directory_iterator(folder))
-                if (fs::is_regular_file(entry.path() / "effect.json")) effects.insert(entry.path());
+            for (const fs::path& room : rooms_of_effects(folder)) {
+                if (!fs::is_directory(room)) continue;
+                for (const auto& entry : fs::directory_iterator(room))
+                    if (fs::is_regular_file(entry.path() / "effect.json")) effects.insert(entry.path());
+            }
             for (const fs::path& effect : effects) suite_.golden_folders.push_back(effect / "cases");
             for (const fs::path& effect : effects)
                 for (GoldenCase& test : read_effect_cases(effect, folder.parent_path(), diagnostics_))

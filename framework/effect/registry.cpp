@@ -13,23 +13,30 @@ namespace aftershade {
 
 namespace fs = std::filesystem;
 
+std::vector<fs::path> rooms_of_effects(const fs::path& folder) {
+    return {folder, folder / "reference"};
+}
+
 EffectRegistry::EffectRegistry(std::vector<fs::path> folders, fs::path glsl_folder)
     : glsl_folder_(std::move(glsl_folder)) {
-    for (const fs::path& folder : folders) {
-        std::error_code failure;
-        fs::directory_iterator at(folder, failure);
-        for (const fs::directory_iterator end; !failure && at != end; at.increment(failure)) {
-            std::error_code unreadable;
-            const fs::path& effect = at->path();
-            const fs::file_type type = fs::status(effect / "effect.json", unreadable).type();
-            if (type == fs::file_type::regular) {
-                const std::string id = effect.filename().string();
-                if (!folders_.emplace(id, effect).second) hidden_.emplace_back(id, effect);
-            } else if (type == fs::file_type::none) unreadable_.emplace(effect, unreadable.message());
-        }
-        if (failure && failure != std::errc::no_such_file_or_directory)
-            unreadable_.emplace(folder, failure.message());
+    for (const fs::path& folder : folders)
+        for (const fs::path& room : rooms_of_effects(folder)) add_effects_in(room);
+}
+
+void EffectRegistry::add_effects_in(const fs::path& folder) {
+    std::error_code failure;
+    fs::directory_iterator at(folder, failure);
+    for (const fs::directory_iterator end; !failure && at != end; at.increment(failure)) {
+        std::error_code unreadable;
+        const fs::path& effect = at->path();
+        const fs::file_type type = fs::status(effect / "effect.json", unreadable).type();
+        if (type == fs::file_type::regular) {
+            const std::string id = effect.filename().string();
+            if (!folders_.emplace(id, effect).second) hidden_.emplace_back(id, effect);
+        } else if (type == fs::file_type::none) unreadable_.emplace(effect, unreadable.message());
     }
+    if (failure && failure != std::errc::no_such_file_or_directory)
+        unreadable_.emplace(folder, failure.message());
 }
 
 void EffectRegistry::warn_of_unreadable(Diagnostics& diagnostics) const {
@@ -96,7 +103,9 @@ bool is_shipped(const EffectManifest& manifest) {
 bool is_shipped(const fs::path& effect_folder) {
     std::error_code failure;
     const fs::path shipped = fs::weakly_canonical(data_path() / "effects", failure);
-    return !failure && fs::weakly_canonical(effect_folder, failure).parent_path() == shipped && !failure;
+    if (failure) return false;
+    const fs::path room = fs::weakly_canonical(effect_folder, failure).parent_path();
+    return !failure && std::ranges::count(rooms_of_effects(shipped), room) > 0;
 }
 
 }  // namespace aftershade

@@ -13,6 +13,10 @@
 
 namespace aftershade {
 
+/// Where effects lie in a folder of them: in it, and in its folder `reference`, which has those that others
+/// are measured by.
+std::vector<std::filesystem::path> rooms_of_effects(const std::filesystem::path& folder);
+
 /// Folders of effects, searched in order; each effect is a folder <id>/ with an effect.json.
 /// [one thread at a time: manifests are read when they are first asked for]
 class EffectRegistry {
@@ -35,6 +39,8 @@ public:
     const EffectManifest* find(const std::string& id, Diagnostics& diagnostics);
 
 private:
+    void add_effects_in(const std::filesystem::path& folder);
+
     std::filesystem::path glsl_folder_;
     std::map<std::string, std::filesystem::path> folders_;               // by id
     std::map<std::filesystem::path, std::string> unreadable_;            // reasons

@@ -51,7 +51,7 @@ def write_probes() -> Path:
 
 def cases() -> list[Document]:
     found = []
-    for file in sorted((ROOT / "effects").glob("*/effect.json")):
+    for file in sorted((ROOT / "effects").glob("**/effect.json")):
         manifest = json.loads(file.read_text())
         name = manifest["id"]
         if name in LEFT_OUT or (ONLY and name not in ONLY):

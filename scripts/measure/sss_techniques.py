@@ -36,7 +36,7 @@ HEAD_PROFILE = {"type": "burley", "albedo": [0.8, 0.5, 0.4], "mean_free_path_mm"
 
 
 def present(techniques: Sequence[Technique] = ALL) -> list[Technique]:
-    return [t for t in techniques if (ROOT / "effects" / t[1] / "effect.json").exists()]
+    return [t for t in techniques if any((ROOT / "effects").glob(f"**/{t[1]}/effect.json"))]
 
 
 def scatter(capture: Path, out: Path, technique: Technique, profile: Document, more: Document | tuple[()] = (), options: Sequence[str] = ()) -> Array:

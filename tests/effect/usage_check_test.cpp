@@ -61,7 +61,7 @@ TEST(UsageCheck, IsContentWhereAllIsUsed) {
 
 TEST(UsageCheck, IsContentWithTheEffectsThatShip) {
     int count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(kSourceTree / "effects")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(kSourceTree / "effects")) {
         if (!std::filesystem::exists(entry.path() / "effect.json")) continue;
         Diagnostics faults;
         const auto node = read_document(entry.path() / "effect.json", faults);

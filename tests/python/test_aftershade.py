@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-CASES = sorted(ROOT.glob("effects/*/cases/*.json"))
+CASES = sorted(ROOT.glob("effects/**/cases/*.json"))
 BLUR = {
     "aftershade": 1,
     "steps": [{"effect": "bokeh", "params": {"f_number": 0.5, "focus_distance": "6.4 m"}}, {"effect": "vignette"}],

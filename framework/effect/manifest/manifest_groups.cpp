@@ -48,7 +48,8 @@ std::optional<std::pair<double, double>> range_of(const Node& written) {
     const auto end = [](std::string_view part) -> std::optional<double> {
         part = trimmed(part);
         const auto value = parse_number(part);
-        const bool is_sound = part.find_first_not_of("-0123456789") == std::string_view::npos && part.size() <= 6;
+        const bool is_sound =
+            part.find_first_not_of("-0123456789") == std::string_view::npos && part.size() <= 6;
         return is_sound ? value : std::nullopt;
     };
     const auto from = end(text.substr(0, dots)), to = end(text.substr(std::min(dots + 2, text.size())));
