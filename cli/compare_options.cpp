@@ -27,6 +27,12 @@ void add_tolerance(CLI::App& app, const std::string& word, const char* verdict, 
         fails ? "Let a difference pass that is at most this part of its value (default: 0)"
               : "Cause no warning for a difference that is at most this part of its value (default: as "
                 "--failrelative)");
+    add(word + "-ulp", options.ulp,
+        fails ? "Let a difference pass, also by --hardfail, that is at most this many units in the last "
+                "place of "
+                "the coarser stored type (default: 0)"
+              : "Cause no warning for a difference of at most this many units in the last place (default: as "
+                "--fail-ulp)");
     add(word + "percent", options.percent, "Percentage of a layer's pixels that may exceed it (default: 0)");
     add("hard" + word, options.hard, "Largest difference of any pixel (default: inf)");
     add(std::string("allow") + (fails ? "failures" : "warnings"), options.allowed,
@@ -49,13 +55,14 @@ Tolerance tolerance_of(const ToleranceOptions& options, const std::string& word,
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     check_number(word, options.limit, kInfinity, diagnostics);
     check_number(word + "relative", options.relative, kInfinity, diagnostics);
+    check_number(word + "-ulp", options.ulp, kInfinity, diagnostics);
     check_number(word + "percent", options.percent, 100, diagnostics);
     check_number("hard" + word, options.hard, kInfinity, diagnostics);
     check_number(word + "-flip", options.flip, 1, diagnostics);
     check_number(word + "-ssim", options.ssim, 1, diagnostics);
-    return {options.limit.value_or(defaults.limit), options.percent.value_or(defaults.percent),
-            options.hard.value_or(defaults.hard), options.allowed.value_or(defaults.allowed),
-            options.relative.value_or(defaults.relative)};
+    return {options.limit.value_or(defaults.limit),       options.percent.value_or(defaults.percent),
+            options.hard.value_or(defaults.hard),         options.allowed.value_or(defaults.allowed),
+            options.relative.value_or(defaults.relative), options.ulp.value_or(defaults.ulp)};
 }
 
 void read_roles(const CompareOptions& options, CompareRules& rules, Diagnostics& diagnostics) {
@@ -200,6 +207,7 @@ CompareRules rules_of(const CompareOptions& options) {
     as_fail.limit = rules.fail.limit;
     as_fail.allowed = rules.fail.allowed;
     as_fail.relative = rules.fail.relative;
+    as_fail.ulp = rules.fail.ulp;
     const Tolerance warn = tolerance_of(options.warn, "warn", as_fail, diagnostics);
     if (options.warn.any()) rules.warn = warn;
     rules.nan_equal = options.nan_equal;

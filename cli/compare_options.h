@@ -23,9 +23,9 @@ inline constexpr ExitCode kCompareUsage = ExitCode(64);
 
 /// As idiff has them.
 struct ToleranceOptions {
-    std::optional<double> limit, relative, percent, hard, flip, ssim;
+    std::optional<double> limit, relative, ulp, percent, hard, flip, ssim;
     std::optional<std::uint64_t> allowed;
-    bool any() const { return limit || relative || percent || hard || allowed; }
+    bool any() const { return limit || relative || ulp || percent || hard || allowed; }
 };
 
 struct CompareOptions {

@@ -33,7 +33,7 @@ void add_level(const std::string& word, const std::string& many, const Tolerance
                std::vector<Key>& keys) {
     const Form share = grammar::number({.min = 0, .max = 1});
     const auto number = [&](double Tolerance::*member) { return usual ? format_number(usual->*member) : ""; };
-    const auto add = [&](const std::string& name, const Form& form, const char* doc,
+    const auto add = [&](const std::string& name, const Form& form, const std::string& doc,
                          const std::string& default_text = "") {
         keys.push_back(optional(name, form, doc, default_text));
     };
@@ -42,6 +42,10 @@ void add_level(const std::string& word, const std::string& many, const Tolerance
     add(word + "_relative", grammar::number({.min = 0}),
         "A difference counts where it also exceeds this part of its value; 0.001 is a half's last digit.",
         number(&Tolerance::relative));
+    add(word + "_ulp", grammar::number({.min = 0}),
+        "A difference counts, also for `hard_" + word +
+            "`, where it exceeds this many units in the last place of the stored type at its value.",
+        number(&Tolerance::ulp));
     add(word + "_percent", grammar::number({.min = 0, .max = 100}),
         "Percentage of pixels that may exceed it.", number(&Tolerance::percent));
     add("hard_" + word, grammar::number({.min = 0}), "Largest difference of any pixel; default: no limit.");

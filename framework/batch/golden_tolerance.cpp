@@ -22,6 +22,7 @@ bool read_level(const grammar::Reader& reader, const std::string& word, const st
     };
     read(word, level.limit);
     read(word + "_relative", level.relative);
+    read(word + "_ulp", level.ulp);
     read(word + "_percent", level.percent);
     read("hard_" + word, level.hard);
     if (reader.has("allow_" + many))

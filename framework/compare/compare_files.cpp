@@ -237,6 +237,7 @@ private:
                               test.type == ComponentType::uint32 ? "integers" : "floats"));
             return;
         }
+        comparison.stored = reference.stored.coarser(test.stored);
         compare_windows(reference, test, comparison);
         LayerImages images;
         if (!is_empty(comparison.window)) {

@@ -54,6 +54,7 @@ struct LayerComparison {
     std::string label;
     LayerRole role = LayerRole::data;
     std::vector<std::string> channels;  ///< compared; LargestDifference::channel counts in these
+    StoredPrecision stored;             ///< the coarser of both files'
     Window window;  ///< compared: what both data windows cover, or either; places add its corner
     std::uint64_t absent_in_reference = 0, absent_in_test = 0;  ///< pixels that only the other image has
     PixelDifferences differences;

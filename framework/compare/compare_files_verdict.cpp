@@ -45,7 +45,10 @@ void judge(const Level& level, LayerComparison& comparison) {
             fmt::format(
                 "{}{} pixels ({:.6g} %) differ by more than {} {:.6g}{}{}", level.where, level.above.count,
                 100 * double(level.above.count) / pixels, level.word, tolerance.limit,
-                tolerance.relative > 0 ? fmt::format(" and {:.6g} of their value", tolerance.relative) : "",
+                (tolerance.relative > 0 ? fmt::format(" and {:.6g} of their value", tolerance.relative)
+                                        : "") +
+                    (tolerance.ulp > 0 ? fmt::format(" and {:.6g} units in the last place", tolerance.ulp)
+                                       : ""),
                 let_pass > 0 ? fmt::format(", {:.6g} allowed", std::floor(let_pass)) : "") +
                 not_comparable(comparison.differences));
     if (level.hard.count > tolerance.allowed)
@@ -108,6 +111,7 @@ Tolerance Levels::warn_tolerance() const {
     same_limit.limit = fail.limit;
     same_limit.allowed = fail.allowed;
     same_limit.relative = fail.relative;
+    same_limit.ulp = fail.ulp;
     return same_limit;
 }
 
@@ -120,7 +124,12 @@ bool Levels::judge(LayerRole role, std::uint64_t pixels, bool has_flip, bool has
 
 DifferenceRules Levels::difference_limits() const {
     const Tolerance warning = warn_tolerance();
-    return {fail.limit, fail.hard, warning.limit, warning.hard, false, {}, fail.relative, warning.relative};
+    DifferenceRules limits;
+    limits.fail = fail.limit, limits.warn = warning.limit;
+    limits.hard_fail = fail.hard, limits.hard_warn = warning.hard;
+    limits.fail_relative = fail.relative, limits.warn_relative = warning.relative;
+    limits.fail_ulp = fail.ulp, limits.warn_ulp = warning.ulp;
+    return limits;
 }
 
 const Levels& CompareRules::levels_of(const std::string& label) const {
@@ -177,9 +186,10 @@ void find_not_judged(const std::vector<const Levels*>& levels, LayerComparison& 
 }  // namespace
 
 void compare_layer(const LayerImages& images, const CompareRules& rules, LayerComparison& comparison) {
-    comparison.differences = pixel_differences(images.reference, images.test, comparison.role,
-                                               rules.difference_rules(comparison.label), images.areas,
-                                               thread_count(rules.threads));
+    DifferenceRules limits = rules.difference_rules(comparison.label);
+    limits.stored = comparison.stored;
+    comparison.differences = pixel_differences(images.reference, images.test, comparison.role, limits,
+                                               images.areas, thread_count(rules.threads));
     for (const CompareArea& area : rules.areas)
         if (area.levels) comparison.areas.push_back(area.name);
     const PixelDifferences& d = comparison.differences;

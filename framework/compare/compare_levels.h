@@ -20,6 +20,7 @@ struct Tolerance {
     /// A difference above `limit` counts where it is also more than this part of its magnitude; see
     /// DifferenceRules. `hard` does not ask it.
     double relative = 0;
+    double ulp = 0;  ///< units in the last place by which pixels may differ; see DifferenceRules
 };
 
 struct Levels {

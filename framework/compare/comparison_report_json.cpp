@@ -132,6 +132,7 @@ Json tolerance_json(const Tolerance& tolerance, const std::optional<double>& fli
                     const std::optional<double>& ssim) {
     return {{"limit", number(tolerance.limit)},
             {"relative", number(tolerance.relative)},
+            {"ulp", number(tolerance.ulp)},
             {"percent", tolerance.percent},
             {"hard", number(tolerance.hard)},
             {"allowed", tolerance.allowed},

@@ -1,6 +1,8 @@
 // When a pixel counts as failing.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace aftershade {
@@ -16,6 +18,26 @@ struct Forgive {
     bool operator==(const Forgive&) const = default;
 };
 
+/// How finely a file stores the values of a layer: floats with a number of bits, or steps of one size.
+struct StoredPrecision {
+    int mantissa_bits = 23;
+    int least_exponent = -126;  ///< of normal numbers
+    double step = 0;            ///< of integers that stand for 0 to 1; 0: they are floats
+
+    /// The unit in the last place at a magnitude, which is at least 0.
+    double unit_at(double magnitude) const {
+        if (step > 0) return step;
+        const bool is_normal = magnitude > 0 && std::isfinite(magnitude);
+        return std::ldexp(1.0, std::max(is_normal ? std::ilogb(magnitude) : least_exponent, least_exponent) -
+                                   mantissa_bits);
+    }
+    /// Which of both is coarser.
+    StoredPrecision coarser(const StoredPrecision& other) const {
+        return unit_at(1) < other.unit_at(1) ? other : *this;
+    }
+};
+inline constexpr StoredPrecision kStoredHalf{10, -14, 0};
+
 /// When a pixel counts as failing. A pixel's difference is, by role:
 ///   color, display, alpha, data   the largest |reference - test| of its channels;
 ///   depth       |reference - test| / |reference|: infinity equals infinity of its sign, 0 equals 0;
@@ -30,6 +52,9 @@ struct Forgive {
 /// alpha and data a channel counts where |reference - test| > R (|reference| + |test|) / 2, of velocity a
 /// vector, by lengths. Depth is relative already. It holds for `fail`, not for `hard_fail`, as idiff's
 /// -failrelative.
+///
+/// `fail_ulp` N lets a difference pass, for `fail` and `hard_fail`, that is at most N units in the last place
+/// of what the coarser of both files stores, at the larger of both magnitudes; of velocity by lengths.
 struct DifferenceRules {
     double fail = 1e-6;  ///< a pixel fails above it
     double hard_fail = std::numeric_limits<double>::infinity();
@@ -38,6 +63,8 @@ struct DifferenceRules {
     bool nan_equal = false;
     Forgive forgive;  ///< of a layer; areas have their layer's
     double fail_relative = 0, warn_relative = 0;
+    double fail_ulp = 0, warn_ulp = 0;
+    StoredPrecision stored;  ///< of a layer; areas have their layer's
 };
 
 }  // namespace aftershade

@@ -194,6 +194,7 @@ std::vector<LayerInfo> layers_of_channels(const std::string& part, std::span<con
         const auto known = std::ranges::find(layers, layer.key(), &LayerInfo::key);
         LayerInfo& target = known == layers.end() ? layers.emplace_back(std::move(layer)) : *known;
         target.channels.push_back(channel.name);
+        if (channel.type == PixelType::half) target.stored = kStoredHalf;
     }
     for (LayerInfo& layer : layers) {
         std::ranges::stable_sort(layer.channels, {}, rank);

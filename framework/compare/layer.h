@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/compare/difference_rules.h"
 #include "framework/file/exr_file.h"
 #include "framework/image/image.h"
 
@@ -33,6 +34,7 @@ struct LayerInfo {
     LayerRole role = LayerRole::data;
     std::vector<std::string> channels;  ///< whole names; R G B, X Y Z W, u v in that order, others as stored
     ComponentType type = ComponentType::float32;  ///< uint32 where every channel is uint
+    StoredPrecision stored;                       ///< of the coarsest channel
     Window data_window;
     Window display_window;
 

@@ -34,7 +34,7 @@ struct LayerFile::Impl {
 
     void open_exr(ExrFile file);
     void read_manifests(const ExrMetadata& metadata);
-    void open_flat(Image image, LayerRole color);
+    void open_flat(Image image, LayerRole color, const StoredPrecision& stored);
     void open_png();
     int part_of(const LayerInfo& layer) const;
     Image read_exr(const LayerInfo& layer, const std::vector<std::string>& channels) const;
@@ -121,7 +121,7 @@ void LayerFile::Impl::read_manifests(const ExrMetadata& metadata) {
         }
 }
 
-void LayerFile::Impl::open_flat(Image image, LayerRole color) {
+void LayerFile::Impl::open_flat(Image image, LayerRole color, const StoredPrecision& stored) {
     static const std::array<std::vector<std::string>, 4> names = {
         {{"Y"}, {"Y", "A"}, {"R", "G", "B"}, {"R", "G", "B", "A"}}};
     whole = std::move(image);
@@ -130,8 +130,10 @@ void LayerFile::Impl::open_flat(Image image, LayerRole color) {
     for (const std::string& channel : whole_names) channels.push_back({channel, PixelType::float32});
     const Window window{0, 0, whole.width() - 1, whole.height() - 1};
     layers = layers_of_channels("", channels, window, window);
-    for (LayerInfo& layer : layers)
+    for (LayerInfo& layer : layers) {
+        layer.stored = stored;
         if (layer.role == LayerRole::color) layer.role = color;
+    }
 }
 
 void LayerFile::Impl::open_png() {
@@ -152,7 +154,9 @@ void LayerFile::Impl::open_png() {
                 for (int c = 0; c < colors; ++c)
                     image.at(x, y, c) = encoded_as_srgb(image.at(x, y, c), *color.gamma);
     }
-    open_flat(std::move(image), LayerRole::display);
+    StoredPrecision stored;
+    stored.step = color.bits == 16 ? 1.0 / 65535 : 1.0 / 255;
+    open_flat(std::move(image), LayerRole::display, stored);
 }
 
 int LayerFile::Impl::part_of(const LayerInfo& layer) const {
@@ -177,7 +181,8 @@ LayerFile::LayerFile(const fs::path& path, const ReadLimits& limits) : impl_(std
         impl_->open_png();
     } else if (is_hdr_file(path)) {
         impl_->format = "Radiance HDR";
-        impl_->open_flat(read_hdr(path), LayerRole::color);
+        // RGBE: eight bits below the exponent that the channels share.
+        impl_->open_flat(read_hdr(path), LayerRole::color, {7, -126, 0});
     } else if (is_exr_file(path)) {
         impl_->open_exr(ExrFile(path, limits));
     } else {

@@ -95,11 +95,15 @@ private:
         figures.largest_pixel = std::max(figures.largest_pixel, difference.value);
         if (difference.value < kInfinity) sums.pixel_sum += difference.value, ++sums.finite_pixels;
         const DifferenceRules& limits = area == 0 ? rules_ : areas_.limits[area - 1];
-        // What a relative limit leaves of the difference.
-        const auto left_by = [&](double relative) {
-            return relative > 0 ? difference_of(pairs, role_, relative).value : kInfinity;
+        // What limits that depend on the value leave of the difference.
+        const auto left_by = [&](double relative, double ulp) {
+            const Leeway leeway{relative, ulp, rules_.stored};
+            return leeway.any() ? difference_of(pairs, role_, leeway).value : kInfinity;
         };
-        const double fail_left = left_by(limits.fail_relative), warn_left = left_by(limits.warn_relative);
+        const double fail_left = left_by(limits.fail_relative, limits.fail_ulp),
+                     warn_left = left_by(limits.warn_relative, limits.warn_ulp),
+                     hard_fail_left = left_by(0, limits.fail_ulp),
+                     hard_warn_left = left_by(0, limits.warn_ulp);
         // Fails above any limit, infinity too.
         const auto exceeds = [&](double limit, double left = kInfinity) {
             return !difference.comparable || std::min(difference.value, left) > limit;
@@ -114,8 +118,10 @@ private:
         ++counts.pixels;
         if (exceeds(limits.fail, fail_left)) add(counts.failing, place.x, place.y);
         if (exceeds(limits.warn, warn_left)) add(counts.warning, place.x, place.y);
-        if (difference.value > limits.hard_fail) add(counts.hard_failing, place.x, place.y);
-        if (difference.value > limits.hard_warn) add(counts.hard_warning, place.x, place.y);
+        if (std::min(difference.value, hard_fail_left) > limits.hard_fail)
+            add(counts.hard_failing, place.x, place.y);
+        if (std::min(difference.value, hard_warn_left) > limits.hard_warn)
+            add(counts.hard_warning, place.x, place.y);
     }
 
     bool is_larger(const ValuePair& pair, const RowSums& sums) const {

@@ -28,12 +28,18 @@ double relative_difference(const ValuePair& pair) {
     return difference == 0 || difference == kEndless ? difference : difference / std::abs(pair.reference);
 }
 
-/// `difference`, or 0 where it is within `relative` of the mean of the magnitudes.
-double beyond(double difference, double relative, double reference, double test) {
-    return difference <= relative * (reference + test) / 2 && difference < kEndless ? 0 : difference;
+bool is_within_ulp(double difference, const Leeway& leeway, double reference, double test) {
+    return leeway.ulp > 0 && difference <= leeway.ulp * leeway.stored.unit_at(std::max(reference, test));
 }
 
-double end_point_error(std::span<const ValuePair> pairs, double relative) {
+/// `difference`, or 0 where it is within the leeway of these magnitudes.
+double beyond(double difference, const Leeway& leeway, double reference, double test) {
+    const bool is_within = difference <= leeway.relative * (reference + test) / 2 ||
+                           is_within_ulp(difference, leeway, reference, test);
+    return is_within && difference < kEndless ? 0 : difference;
+}
+
+double end_point_error(std::span<const ValuePair> pairs, const Leeway& leeway) {
     const auto error = [&](std::span<const ValuePair> vector) {
         double difference = 0, reference = 0, test = 0;
         for (const ValuePair& pair : vector) {
@@ -41,18 +47,21 @@ double end_point_error(std::span<const ValuePair> pairs, double relative) {
             reference += pair.reference * pair.reference;
             test += pair.test * pair.test;
         }
-        return beyond(std::sqrt(difference), relative, std::sqrt(reference), std::sqrt(test));
+        return beyond(std::sqrt(difference), leeway, std::sqrt(reference), std::sqrt(test));
     };
     return pairs.size() == 4 ? std::max(error(pairs.first(2)), error(pairs.last(2))) : error(pairs);
 }
 
-double value_of(std::span<const ValuePair> pairs, LayerRole role, double relative) {
-    if (role == LayerRole::velocity) return end_point_error(pairs, relative);
+double value_of(std::span<const ValuePair> pairs, LayerRole role, const Leeway& leeway) {
+    if (role == LayerRole::velocity) return end_point_error(pairs, leeway);
     double largest = 0;
     for (const ValuePair& pair : pairs) {
-        double difference =
-            beyond(pair.difference(), relative, std::abs(pair.reference), std::abs(pair.test));
-        if (role == LayerRole::depth) difference = relative_difference(pair);
+        const double reference = std::abs(pair.reference), test = std::abs(pair.test);
+        double difference = beyond(pair.difference(), leeway, reference, test);
+        if (role == LayerRole::depth)
+            difference = is_within_ulp(pair.difference(), leeway, reference, test) && pair.finite
+                             ? 0
+                             : relative_difference(pair);
         if (role == LayerRole::id) difference = pair.same_bits ? 0 : kEndless;
         largest = std::max(largest, difference);
     }
@@ -77,8 +86,8 @@ void take_pair(const Image& reference, PixelPlace in_reference, const Image& tes
                        : pair_of(reference.floats()[r + c], test.floats()[t + c], nan_equal);
 }
 
-PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role, double relative) {
-    const double value = value_of(pairs, role, relative);
+PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role, const Leeway& leeway) {
+    const double value = value_of(pairs, role, leeway);
     const bool comparable =
         role == LayerRole::id ? value == 0 : std::ranges::all_of(pairs, &ValuePair::comparable);
     return {value, comparable};

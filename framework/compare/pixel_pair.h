@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "framework/compare/difference_rules.h"
 #include "framework/compare/layer.h"
 #include "framework/image/image.h"
 
@@ -33,7 +34,15 @@ struct PixelPlace {
 void take_pair(const Image& reference, PixelPlace in_reference, const Image& test, PixelPlace in_test,
                bool nan_equal, std::vector<ValuePair>& pairs);
 
-/// A pixel's difference as DifferenceRules defines it; of what exceeds `relative` of its magnitude alone.
+/// Differences that do not count, as DifferenceRules defines them.
+struct Leeway {
+    double relative = 0;
+    double ulp = 0;
+    StoredPrecision stored;
+    bool any() const { return relative > 0 || ulp > 0; }
+};
+
+/// A pixel's difference as DifferenceRules defines it; of what the leeway leaves alone.
 struct PixelDifference {
     double value = 0;
     bool comparable = true;  ///< else the pixel fails whatever the limit
@@ -41,6 +50,6 @@ struct PixelDifference {
         return comparable != other.comparable ? comparable : value < other.value;
     }
 };
-PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role, double relative = 0);
+PixelDifference difference_of(std::span<const ValuePair> pairs, LayerRole role, const Leeway& leeway = {});
 
 }  // namespace aftershade

@@ -127,6 +127,7 @@ bool is_srgb_profile(Bytes profile) {
 
 void PngColorReader::read(const std::string& type, Bytes data) {
     if (type == "acTL") is_animated_ = true;
+    else if (type == "IHDR" && data.size() > 8) bits_ = data[8];
     else if (type == "sRGB") has_srgb_ = true;
     else if (type == "pHYs" && data.size() == 9 && number_at(data, 0) > 0 && number_at(data, 4) > 0)
         pixel_aspect_ = float(double(number_at(data, 4)) / double(number_at(data, 0)));
@@ -165,6 +166,7 @@ PngColor PngColorReader::color() const {
     PngColor color;
     color.is_animated = is_animated_;
     color.pixel_aspect = pixel_aspect_;
+    color.bits = bits_;
     const auto take = [&](const std::string& space) {
         if (!space.empty()) color.space = space;
         return color;

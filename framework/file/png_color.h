@@ -19,6 +19,7 @@ struct PngColor {
     std::optional<double> gamma;
     bool is_animated = false;  ///< there are further pictures
     float pixel_aspect = 1;    ///< width over height, by pHYs
+    int bits = 8;              ///< of a sample
     bool is_srgb() const { return space == "sRGB"; }
     /// Says that a file which is read as data keeps its stored numbers: "its gAMA 1 is not applied: ...".
     /// "" for sRGB, and for a file without colour chunks.
@@ -36,6 +37,7 @@ private:
     std::optional<double> gamma_;
     bool has_cicp_ = false, has_icc_ = false, has_srgb_ = false, is_animated_ = false;
     float pixel_aspect_ = 1;
+    int bits_ = 8;
 };
 
 /// Whether an ICC profile is that of sRGB: of a display, its three colorants and a curve that is sRGB's or

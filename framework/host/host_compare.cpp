@@ -40,6 +40,7 @@ public:
         number(option + ".percent", value.percent, 0, 100);
         number(option + ".hard", value.hard, 0, kInfinity);
         number(option + ".relative", value.relative, 0, kInfinity);
+        number(option + ".ulp", value.ulp, 0, kInfinity);
     }
     void fault(const std::string& option, const std::string& text) {
         faults_.error({"CompareOptions::" + option}, text);
@@ -81,7 +82,8 @@ void check_compare_options(const CompareOptions& options) {
 }
 
 aftershade::Tolerance internal(const Tolerance& tolerance) {
-    return {tolerance.limit, tolerance.percent, tolerance.hard, tolerance.allowed, tolerance.relative};
+    return {tolerance.limit,   tolerance.percent,  tolerance.hard,
+            tolerance.allowed, tolerance.relative, tolerance.ulp};
 }
 
 CompareRules rules_of(const CompareOptions& options) {

@@ -73,6 +73,7 @@ def compare(
     role: str = "color",
     limit: float = 1e-6,
     relative: float = 0,
+    ulp: float = 0,
     percent: float = 0,
     allowed: int = 0,
     fail_flip: float | None = None,
@@ -89,6 +90,7 @@ def compare(
     :param role: of arrays: color, display, alpha, depth, velocity, id or data
     :param limit: of a pixel's difference; more than `percent` of the pixels and more than `allowed` above it fail
     :param relative: a difference above `limit` counts where it is also more than this part of its value
+    :param ulp: a difference counts where it is more than this many units in the last place of the coarser file's stored type
     :param fail_flip, fail_ssim: fails where the mean FLIP is above, or the SSIM below
     :param maps: fill Layer.flip_map and Layer.ssim_map
     :param roles: of files: how layers are compared, by label
@@ -96,6 +98,7 @@ def compare(
     options = _native.CompareOptions(
         limit,
         relative,
+        ulp,
         percent,
         allowed,
         fail_flip,

@@ -28,14 +28,15 @@ api::FlipChoice flip_from(const std::string& name) {
     return found->second;
 }
 
-api::CompareOptions compare_options(double limit, double relative, double percent, std::uint64_t allowed,
-                                    std::optional<double> fail_flip, std::optional<double> fail_ssim,
-                                    bool nan_equal, const std::string& flip, bool ssim, bool maps,
-                                    double pixels_per_degree,
+api::CompareOptions compare_options(double limit, double relative, double ulp, double percent,
+                                    std::uint64_t allowed, std::optional<double> fail_flip,
+                                    std::optional<double> fail_ssim, bool nan_equal, const std::string& flip,
+                                    bool ssim, bool maps, double pixels_per_degree,
                                     const std::map<std::string, std::string>& roles) {
     api::CompareOptions options;
     options.fail.limit = limit;
     options.fail.relative = relative;
+    options.fail.ulp = ulp;
     options.fail.percent = percent;
     options.fail.allowed = allowed;
     options.fail_flip = fail_flip;
@@ -97,7 +98,7 @@ nb::dict comparison_to(const api::Comparison& comparison) {
 
 void bind_compare(nb::module_& module) {
     nb::class_<api::CompareOptions>(module, "CompareOptions")
-        .def(nb::new_(&compare_options), "limit"_a, "relative"_a, "percent"_a, "allowed"_a,
+        .def(nb::new_(&compare_options), "limit"_a, "relative"_a, "ulp"_a, "percent"_a, "allowed"_a,
              "fail_flip"_a.none(), "fail_ssim"_a.none(), "nan_equal"_a, "flip"_a, "ssim"_a, "maps"_a,
              "pixels_per_degree"_a, "roles"_a);
     module.def(

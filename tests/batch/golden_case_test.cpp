@@ -77,12 +77,13 @@ TEST(GoldenTolerance, IsExactWithoutAKeyAndWarnsOnlyWhenAsked) {
 TEST(GoldenTolerance, HasEveryKeyOfCompare) {
     Diagnostics diagnostics;
     const CompareRules rules = tolerance(
-        R"({"fail": 0.1, "fail_relative": 0.001, "fail_percent": 2, "hard_fail": 0.5, "allow_failures": 3, "fail_flip": 0.2, "fail_ssim": 0.9,
+        R"({"fail": 0.1, "fail_relative": 0.001, "fail_ulp": 2, "fail_percent": 2, "hard_fail": 0.5, "allow_failures": 3, "fail_flip": 0.2, "fail_ssim": 0.9,
             "warn": 0.05, "warn_percent": 1, "hard_warn": 0.4, "allow_warnings": 4, "warn_flip": 0.1,
             "warn_ssim": 0.95, "nan_equal": true})",
         diagnostics);
     EXPECT_FALSE(diagnostics.has_errors()) << faults_of(diagnostics);
     EXPECT_EQ(rules.fail.relative, 0.001);
+    EXPECT_EQ(rules.fail.ulp, 2);
     EXPECT_EQ(rules.fail.limit, 0.1);
     EXPECT_EQ(rules.fail.percent, 2);
     EXPECT_EQ(rules.fail.hard, 0.5);

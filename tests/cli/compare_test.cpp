@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "framework/compare/difference_rules.h"
 #include "framework/file/exr_file.h"
 #include "tests/cli/command.h"
 #include "tests/compare/pictures.h"
@@ -94,6 +95,45 @@ TEST_F(CompareCommand, EndsWith64ForWrongWords) {
               std::string::npos);
     EXPECT_NE(compare({"r.exr", "t.exr", "--role", "RGX=data"}).err.find("did you mean 'RGB'"),
               std::string::npos);
+}
+
+TEST_F(CompareCommand, LetsTheLastPlacesOfHalfsPassAtEveryBrightnessAndNoRealChange) {
+    // Light from 0.001 to 10,000 as halfs; noise of up to two units in the last place, then one pixel off by
+    // 2 %.
+    Image reference(64, 16, 3);
+    const auto half = [](double value) {
+        const double unit = kStoredHalf.unit_at(value);
+        return float(std::round(value / unit) * unit);
+    };
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c) reference.at(x, y, c) = half(std::pow(10, x / 9.0 - 3) * (1 + c));
+    Image noisy = reference;
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c)
+                noisy.at(x, y, c) += float((x + y + c) % 3 * kStoredHalf.unit_at(reference.at(x, y, c)));
+    Image changed = noisy;
+    changed.at(40, 3, 1) = half(reference.at(40, 3, 1) * 1.02);
+    write_rgb_halfs(folder_ / "reference.exr", reference);
+    write_rgb_halfs(folder_ / "noisy.exr", noisy);
+    write_rgb_halfs(folder_ / "changed.exr", changed);
+    const std::vector<std::string> limits = {"--fail", "1e-5", "--hardfail", "1e-4"};
+    const auto code = [&](const char* test, std::vector<std::string> words) {
+        words.insert(words.begin(), {"reference.exr", test});
+        words.insert(words.end(), limits.begin(), limits.end());
+        return compare(words).exit_code;
+    };
+    EXPECT_EQ(code("noisy.exr", {}), 2);
+    EXPECT_EQ(code("noisy.exr", {"--fail-ulp", "1"}), 2);
+    EXPECT_EQ(code("noisy.exr", {"--fail-ulp", "2"}), 0);
+    EXPECT_EQ(code("changed.exr", {"--fail-ulp", "2"}), 2);
+    EXPECT_EQ(code("noisy.exr", {"--fail-ulp", "-1"}), 64);
+    // The coarser of both files counts.
+    write_rgb(folder_ / "noisy.exr", noisy);
+    EXPECT_EQ(code("noisy.exr", {"--fail-ulp", "2"}), 0);
+    write_rgb(folder_ / "reference.exr", reference);
+    EXPECT_EQ(code("noisy.exr", {"--fail-ulp", "2"}), 2);
 }
 
 TEST_F(CompareCommand, KnowsEachTolerance) {

@@ -78,4 +78,13 @@ inline void write_rgb(const std::filesystem::path& path, const Image& image) {
     write_exr_file(path, {{{"R", "G", "B"}, image}});
 }
 
+/// The same as halfs.
+inline void write_rgb_halfs(const std::filesystem::path& path, const Image& image) {
+    std::vector<ExrOutputChannel> channels;
+    for (int c = 0; c < 3; ++c) channels.push_back({std::string(1, "RGB"[c]), PixelType::half, &image, c});
+    ExrWriteOptions options;
+    options.data_window = options.display_window = {0, 0, image.width() - 1, image.height() - 1};
+    write_exr(path, channels, options);
+}
+
 }  // namespace aftershade::test

@@ -126,6 +126,43 @@ TEST(PixelDifferences, HoldARelativeLimitOfAVectorByItsLength) {
     EXPECT_EQ(failing({30, 40, 1, 0}, {30, 44, 2, 0}), 1) << "the second vector's";
 }
 
+TEST(PixelDifferences, LetUnitsInTheLastPlaceOfTheStoredTypePassAtEveryValue) {
+    // A half has 10 bits below its first: 4 at 5464, 0.125 at 140, 2^-24 below 2^-14.
+    struct Case {
+        float reference, test;
+        double units;
+    };
+    for (const Case& c : {Case{5464, 5468, 1},
+                          {140.25f, 140.375f, 1},
+                          {2047, 2049, 1},
+                          {-0.75f, -0.7509765625f, 2},
+                          {0, 0x1p-24f, 1},
+                          {0x1p-15f, 0x1p-15f + 3 * 0x1p-24f, 3}})
+        for (const LayerRole role : {LayerRole::color, LayerRole::data, LayerRole::depth}) {
+            DifferenceRules rules;
+            rules.fail = rules.hard_fail = 0, rules.stored = kStoredHalf;
+            const auto failing = [&](double ulp) {
+                rules.fail_ulp = ulp;
+                const PixelDifferences d = differences(row({c.reference}), row({c.test}), role, rules);
+                EXPECT_EQ(d.failing.count, d.hard_failing.count);
+                return d.failing.count;
+            };
+            EXPECT_EQ(failing(c.units), 0) << c.reference << " " << c.test;
+            EXPECT_EQ(failing(c.units * 0.99), 1) << c.reference << " " << c.test;
+            rules.stored = {};
+            EXPECT_EQ(failing(c.units), 1) << "a float's are smaller";
+        }
+}
+
+TEST(PixelDifferences, NeverLetUnitsInTheLastPlacePassIdsInfinityOrNan) {
+    DifferenceRules rules;
+    rules.fail_ulp = 1e9, rules.stored = kStoredHalf;
+    for (const auto& [r, t] : {std::pair{kInfinity, 1.0f}, {1.0f, -kInfinity}, {kNan, 1.0f}})
+        for (const LayerRole role : {LayerRole::data, LayerRole::velocity, LayerRole::depth})
+            EXPECT_EQ(differences(row({r}), row({t}), role, rules).failing.count, 1) << r << " " << t;
+    EXPECT_EQ(differences(row({3}), row({4}), LayerRole::id, rules).failing.count, 1);
+}
+
 TEST(PixelDifferences, NeverLetARelativeLimitPassInfinityOrNan) {
     DifferenceRules rules;
     rules.fail_relative = 10;

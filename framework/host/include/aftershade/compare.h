@@ -28,6 +28,9 @@ struct Tolerance {
     std::uint64_t allowed = 0;                              ///< pixels
     /// At least 0: a difference above `limit` counts where it is also more than this part of its value.
     double relative = 0;
+    /// At least 0: a difference counts, also for `hard`, where it is more than this many units in the last
+    /// place of what the coarser of both files stores; images in memory are floats.
+    double ulp = 0;
 };
 
 /// `automatic`: LDR of encoded colours, HDR of light.
