@@ -8,22 +8,29 @@
 // three stills of docs/quality-sss-adaptive.md.
 const float kFramesOfBlur = 9.0;
 
+// The most that the blurs leave over, as a part of the light that there is: on the stills of docs/quality-sss-adaptive.md it is
+// more in 2 of 10,000 pixels.
+const float kMostLeftOver = 1.0;
+
 // What a pixel that scatters comes to after this frame.
 struct Guided {
     Gathered sums;
     float frames;   // how many they are of
+    vec2 residual;  // residual_at() of the pixel
 };
 
 // The light of samples that find this share of the profile, of which filled() makes `light`.
 vec3 unfilled(vec3 light, Gathered sums) { return light * filling(sums.share / sums.whole) * sums.whole; }
 
-// What the average of the frame before is in this frame's light.
-Gathered carried(ivec2 p, ivec2 q) {
+// What the average of the frame before is in this frame's light, of which `now` is.
+Gathered carried(ivec2 p, ivec2 q, Gathered now) {
     Gathered then = Gathered(texelFetch(guided_prev, q, 0).rgb, texelFetch(guided_share_prev, q, 0).rgb,
                              texelFetch(guided_whole_prev, q, 0).rgb);
     vec3 smooth_now = texelFetch(blurred, p, 0).rgb, smooth_then = texelFetch(blurred_prev, q, 0).rgb;
     // Where light fades, so does what the blurs are wrong by.
     vec3 left_over = (filled(then) - smooth_then) * min(smooth_now / max(smooth_then, 1e-20), 1.0);
+    // Where samples met a highlight that the blurs missed, only they can say that it has gone.
+    left_over = min(left_over, kMostLeftOver * max(smooth_now, filled(now)));
     then.light = unfilled(smooth_now + left_over, then);
     return then;
 }
@@ -32,15 +39,16 @@ Gathered carried(ivec2 p, ivec2 q) {
 // is off in the mean, that of the averages less.
 Guided guided_light(ivec2 p, Gathered now, ivec2 q, bool was_seen) {
     float frames = was_seen ? texelFetch(guided_prev, q, 0).a : 0.0;
-    Gathered then = frames > 0.0 ? carried(p, q) : Gathered(unfilled(texelFetch(blurred, p, 0).rgb, now), now.share, now.whole);
+    Gathered then = frames > 0.0 ? carried(p, q, now) : Gathered(unfilled(texelFetch(blurred, p, 0).rgb, now), now.share, now.whole);
     // Frames count alike until the newest would count less than its weight.
     float weight = max(1.0 / (max(frames, kFramesOfBlur) + 1.0), param.guiding_weight);
     Gathered sums = Gathered(mix(then.light, now.light, weight), mix(then.share, now.share, weight), mix(then.whole, now.whole, weight));
-    return Guided(sums, 1.0 / weight);
+    vec2 residual = frames > 0.0 ? vec2(q) + 0.5 + residual_at(q) - past_place() : vec2(0.0);
+    return Guided(sums, 1.0 / weight, (1.0 - weight) * residual);
 }
 
 void keep_average(Guided now) {
     out_guided = vec4(now.sums.light, now.frames);
-    out_guided_share = vec4(now.sums.share, 0.0);
-    out_guided_whole = vec4(now.sums.whole, 0.0);
+    out_guided_share = vec4(now.sums.share, now.residual.x);
+    out_guided_whole = vec4(now.sums.whole, now.residual.y);
 }

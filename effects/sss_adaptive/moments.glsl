@@ -9,7 +9,7 @@ float viewed(vec3 light) {
 #if TARGET == TARGET_RELATIVE
     // Level 3 has squares of 64 px.
     vec2 around = textureLod(tile_light, gl_FragCoord.xy * tile_light_size.zw / float(kTile), 3.0).rg;
-    return luminance(light) * around.y / max(around.x, 1e-20);
+    return min(luminance(light) * around.y / max(around.x, 1e-20), 1e6);
 #else
     return exp2(param.exposure) * luminance(light);
 #endif

@@ -8,10 +8,22 @@ vec2 past_place() {
     return gl_FragCoord.xy - motion;
 }
 
-// Nearest pixel of the frame before, and whether that is in the picture.
+ivec2 pixel_at(vec2 place) { return clamp(ivec2(floor(place)), ivec2(0), frame.size - 1); }
+
+// How far from its pixel's middle lies what the pixel's average is of. A surface that moves by part of a pixel would lose that
+// part in each frame, were it always taken from the pixel's middle.
+vec2 residual_at(ivec2 pixel) {
+#if GUIDING
+    return vec2(texelFetch(guided_share_prev, pixel, 0).a, texelFetch(guided_whole_prev, pixel, 0).a);
+#else
+    return vec2(0.0);
+#endif
+}
+
+// The pixel of the frame before whose average is of the nearest place, and whether that is in the picture.
 bool past_pixel(out ivec2 pixel) {
     vec2 place = past_place();
-    pixel = clamp(ivec2(floor(place)), ivec2(0), frame.size - 1);
+    pixel = pixel_at(place - residual_at(pixel_at(place)));
     return frame.history_valid && all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(frame.size)));
 }
 

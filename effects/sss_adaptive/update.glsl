@@ -8,6 +8,10 @@ void keep_moments(Facet here, ivec2 q, vec4 past, bool known, float count, float
 #if GUIDING
     // What the average is of: the blurred light has no noise, and moves with light and shadows.
     value -= viewed(texelFetch(blurred, ivec2(gl_FragCoord.xy), 0).rgb);
+#if TARGET == TARGET_RELATIVE
+    // Beside darkness light has no measure, and what it seems to be there would be remembered for dozens of frames.
+    value = clamp(value, -1.0, 1.0);
+#endif
 #elif CONTROL_VARIATE == CONTROL_VARIATE_CONSTANT
     value -= viewed(here.light);
 #elif CONTROL_VARIATE == CONTROL_VARIATE_ONLINE

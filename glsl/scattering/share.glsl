@@ -18,8 +18,9 @@ float mean_inverse_distance(Facet there, vec3 way, float r) {
     off = abs(off) * inversesqrt(max(dot(along, along), 1e-8 * dot(there.position, there.position)));
     float half_length = 0.5 * sqrt(square * max(there.spread * there.spread - 1.0, 1e-2));
     float beside = max(r * r - off * off, 0.0025 * square), a = off - half_length, b = off + half_length;
-    // asinh(b / beside) - asinh(a / beside), with beside squared.
-    return log((b + sqrt(b * b + beside)) / (a + sqrt(a * a + beside))) / (2.0 * half_length);
+    // asinh(b / beside) - asinh(a / beside), with beside squared. Far out a + sqrt(a * a + beside) would cancel to nothing.
+    float root = sqrt(a * a + beside), from_a = a < 0.0 && a * a > 1e4 * beside ? beside / (root - a) : a + root;
+    return log((b + sqrt(b * b + beside)) / from_a) / (2.0 * half_length);
 }
 
 // Two unit vectors at right angles to a unit vector and each other. Duff and others 2017, Building an Orthonormal Basis,

@@ -323,7 +323,11 @@ MISUSES = {
     "a file and an array": (lambda host: aftershade.compare("a.exr", np.ones((2, 2))), TypeError, "two"),
     "arrays of two sizes": (lambda host: aftershade.compare(np.ones((2, 2), np.float32), np.ones((2, 3), np.float32), role="data"), aftershade.UsageError, "2"),
     "sequence without frames": (lambda host: aftershade.Sequence("nowhere_####.exr", host=host), aftershade.Error, "nowhere"),
-    "effect like no other": (lambda host: aftershade.Look({"aftershade": 1, "steps": [{"effect": "x" * 14}]}, host=host), aftershade.DocumentError, "effect_paths names a folder"),
+    "effect like no other": (
+        lambda host: aftershade.Look({"aftershade": 1, "steps": [{"effect": "x" * 14}]}, host=host),
+        aftershade.DocumentError,
+        "effect_paths names a folder",
+    ),
     "unknown option": (lambda host: aftershade.Look(BLUR, host=host).render(frame_arrays(), colour=1), TypeError, "colour"),
     "unknown treatment of NaN": (lambda host: aftershade.Look(BLUR, host=host).render(frame_arrays(), non_finite="drop"), ValueError, "drop"),
 }
