@@ -24,7 +24,7 @@ private:
 
 ExitCode exit_code_of(ErrorKind kind);
 ExitCode exit_code_of(host::ErrorKind kind);
-/// Of an Error its own, of others memory or effect.
+/// The code of the error's kind; memory or effect for other exceptions.
 ExitCode exit_code_of(const std::exception& error);
 ExitCode exit_code_of(const RunReport& report);
 

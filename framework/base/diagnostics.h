@@ -20,7 +20,8 @@ struct Place {
     int line = 0;      ///< 1-based
     int column = 0;    ///< 1-based, in bytes
     std::optional<Option> option = std::nullopt;
-    /// Of what a manifest's group or `for` writes out: which copy, from 1; and the variable, "level = 3".
+    /// Where a manifest's group or `for` writes out a declaration: which copy, from 1; the variable, "level =
+    /// 3".
     int copy = 0;
     std::string turn = {};
 };
@@ -39,7 +40,7 @@ struct Diagnostic {
     std::string message;
 };
 
-/// Of several copies of one declaration, only the first with a fault at a place reports faults there, and
+/// Where a declaration has several copies, only the first with a fault at a place reports faults there, and
 /// says its turn. [one thread at a time]
 class Diagnostics {
 public:

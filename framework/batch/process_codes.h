@@ -3,7 +3,7 @@
 
 namespace aftershade {
 
-/// Of every verb but `compare` and `golden`, which keep idiff's (docs/exit-codes.md).
+/// Every verb has these but `compare` and `golden`, which keep idiff's (docs/exit-codes.md).
 enum class ExitCode : int {
     done = 0,     ///< everything asked for was written
     partial = 1,  ///< some frames done, some failed; or a verdict verb says no

@@ -54,7 +54,8 @@ inline constexpr StoredPrecision kStoredHalf{10, -14, 0};
 /// -failrelative.
 ///
 /// `fail_ulp` N lets a difference pass, for `fail` and `hard_fail`, that is at most N units in the last place
-/// of what the coarser of both files stores, at the larger of both magnitudes; of velocity by lengths.
+/// of what the coarser of both files stores, at the larger of both magnitudes. The lengths of its vectors
+/// count for velocity.
 struct DifferenceRules {
     double fail = 1e-6;  ///< a pixel fails above it
     double hard_fail = std::numeric_limits<double>::infinity();

@@ -207,9 +207,9 @@ std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
     return others;
 }
 
-/// Of a graph whose fusions all link. Another thread's crash would be blamed on the pass that this one is at,
-/// so passes of foreign effects are not among them. Without a store nothing reaches this thread, which would
-/// compile all of it once more.
+/// Takes it that all fusions of the graph link. Another thread's crash would be blamed on the pass that this
+/// one is at, so passes of foreign effects are not among them. Without a store nothing reaches this thread,
+/// which would compile all of it once more.
 void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
                                  const std::map<int, Assembled>& others) {
     if (tools_.compile_threads < 1 || !tools_.programs.store().is_on() || tools_.programs.is_guarding_loops())

@@ -70,7 +70,7 @@ public:
     /// before the first that differs are not drawn again, if they are kept and no step has a history. The
     /// captures must be the same objects with the same pixels.
     FrameResult render_again(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
-    /// Of the last graph: what the threads of RendererOptions compiled.
+    /// How many programs of the last graph the threads of RendererOptions compiled.
     int programs_compiled_ahead() const;
     /// Of the last frame: how many of the pipeline's steps were drawn.
     int steps_drawn() const { return steps_drawn_; }

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "framework/file/exr_file.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/non_finite.h"
 #include "framework/image/role.h"

@@ -65,7 +65,8 @@ public:
     FrameFingerprints(std::string setup, const Sequence& sequence, const CaptureReader& reader,
                       const Pipeline& pipeline, RunOptions run);
 
-    /// Of the index-th frame of the run. Throws Error(ErrorKind::usage) for a damaged history.
+    /// The index-th frame of the run has this fingerprint. Throws Error(ErrorKind::usage) for a damaged
+    /// history.
     FrameFingerprint of(std::size_t index);
     /// The frame has no pixels, so history restarts behind it.
     void mark_failed(std::size_t index);

@@ -253,7 +253,7 @@ private:
         return result + text.substr(at);
     }
 
-    /// Of "level", "level + 1", "level - 1", "2 * level" or "0.5 ^ level".
+    /// The value of "level", "level + 1", "level - 1", "2 * level" or "0.5 ^ level".
     Node evaluated(const std::string& expression, const Place& place, const Around& around) {
         const std::size_t at = std::min(expression.find_first_of("+-*^"), expression.size());
         const char sign = at < expression.size() ? expression[at] : ' ';
