@@ -8,6 +8,7 @@
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
 #include "framework/look/pixel_shape.h"
+#include "framework/render/draw_with.h"
 #include "framework/render/graph_builder.h"
 #include "framework/render/history_file.h"
 
@@ -63,6 +64,7 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
       status_(natives.status),
       natives_(natives),
       options_(options) {
+    options_.draw_with = chosen_draw_with(context_, options.draw_with, programs_->store());
     options_.compile_threads = CompileAhead::useful_threads(context_, options.compile_threads);
     const bool guards = options.guards_loops || options.audits;
     if (!guards || context_.info().renderer.find("llvmpipe") == std::string::npos) return;
