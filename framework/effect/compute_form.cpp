@@ -60,7 +60,7 @@ constexpr std::array<std::string_view, 12> kDerivatives = {
     "dFdx",       "dFdy",     "fwidth",         "dFdxFine",             "dFdyFine",            "fwidthFine",
     "dFdxCoarse", "dFdyCoarse", "fwidthCoarse", "interpolateAtCentroid", "interpolateAtSample",
     "interpolateAtOffset"};
-/// Calls that choose a level by derivatives.
+/// Functions that choose a level by derivatives; a macro may call one.
 constexpr std::array<std::string_view, 5> kLevelByDerivatives = {
     "texture", "textureOffset", "textureProj", "textureProjOffset", "textureQueryLod"};
 
@@ -123,7 +123,7 @@ private:
             return look_at_discard(i);
         } else if (std::ranges::find(kDerivatives, word) != kDerivatives.end()) {
             return "uses " + std::string(word) + "()";
-        } else if (shape_.has_levels && text(i + 1) == "(" &&
+        } else if (shape_.has_levels &&
                    std::ranges::find(kLevelByDerivatives, word) != kLevelByDerivatives.end()) {
             return "chooses levels of a texture by derivatives, with " + std::string(word) + "()";
         } else if (word == "layout") {

@@ -240,6 +240,14 @@ ProgramSources ProgramCache::host_sources(const std::string& file, const std::ve
     return sources;
 }
 
+ProgramSources ProgramCache::full_screen(std::string text, std::string label) const {
+    ProgramSources sources;
+    sources.vertex = full_screen_;
+    sources.main.text = std::move(text);
+    sources.label = std::move(label);
+    return sources;
+}
+
 std::optional<ProgramSources> in_compute_form(ProgramSources draw, const DrawShape& shape,
                                               std::string& why_not) {
     // What the host has written behind the author's text has none, nor has a text of its own.

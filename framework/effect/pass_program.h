@@ -68,6 +68,8 @@ public:
     /// `vertex`: likewise, empty: over the full screen.
     ProgramSources host_sources(const std::string& file, const std::vector<std::string>& defines,
                                 const std::string& vertex = "") const;
+    /// The same of a text.
+    ProgramSources full_screen(std::string text, std::string label) const;
     std::shared_ptr<const gpu::Program> host(const std::string& file, const std::vector<std::string>& defines,
                                              const std::string& vertex = "") {
         return get(host_sources(file, defines, vertex));

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <string_view>
 
-#include "framework/effect/program_store.h"
+#include "framework/effect/pass_program.h"
 #include "framework/render/renderer_options.h"
 
 namespace aftershade {
@@ -14,9 +13,13 @@ namespace aftershade {
 std::optional<DrawWith> parse_draw_with(std::string_view name);
 std::string_view draw_with_name(DrawWith way);
 
-/// `wanted`, or where that is automatic, what $AFTERSHADE_DRAW_WITH names, or else what is faster with this
-/// context: `fragment` on software GL, and elsewhere what a measurement of some milliseconds finds, which
-/// `store` keeps for the next process. Throws Error(ErrorKind::usage) for an unknown name in the variable.
-DrawWith chosen_draw_with(gpu::Context& context, DrawWith wanted, const ProgramStore& store);
+/// What is faster on this renderer: `fragment` on software GL, whose compute shaders gain nothing
+/// (docs/gpu.md), and elsewhere what some milliseconds of measuring find, which the store of `programs` keeps
+/// for the next process.
+DrawWith faster_draw_with(gpu::Context& context, ProgramCache& programs);
+
+/// `wanted`, or where that is automatic what $AFTERSHADE_DRAW_WITH names, or else the faster way. Throws
+/// Error(ErrorKind::usage) for an unknown name in the variable.
+DrawWith chosen_draw_with(gpu::Context& context, DrawWith wanted, ProgramCache& programs);
 
 }  // namespace aftershade
