@@ -13,6 +13,7 @@
 #include "cli/plugin_options.h"
 #include "cli/verbs.h"
 #include "framework/base/cores.h"
+#include "framework/base/data_path.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
 #include "framework/batch/approved_image.h"
@@ -21,6 +22,7 @@
 #include "framework/effect/native/thread_limit.h"
 #include "framework/gpu/context.h"
 #include "framework/gpu/driver_cache.h"
+#include "framework/render/draw_with.h"
 
 namespace aftershade::cli {
 
@@ -74,6 +76,18 @@ nlohmann::ordered_json confinement_json(const Confinement& held) {
         {"not_prevented", confinement_gaps(held)}};
 }
 
+/// What --draw-with auto takes on a backend that works.
+std::string draws_with(const gpu::BackendReport& report) {
+    if (report.info.software) return std::string(draw_with_name(DrawWith::fragment));
+    try {
+        gpu::Context context(report.backend);
+        ProgramCache programs(context, data_path() / "glsl");
+        return std::string(draw_with_name(faster_draw_with(context, programs)));
+    } catch (const Error& error) {
+        return std::string("not known: ") + error.what();
+    }
+}
+
 void print_table(const std::vector<gpu::BackendReport>& reports) {
     fmt::print("{:<13} {:<7} {:<45} {}\n", "backend", "usable", "renderer", "version");
     for (const gpu::BackendReport& report : reports) {
@@ -82,6 +96,10 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
             fmt::print("{:<13} {:<7} {:<45} {}\n", name, "yes", report.info.renderer, report.info.version);
         else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
     }
+    for (const gpu::BackendReport& report : reports)
+        if (report.usable)
+            fmt::print("draws with    {} on {}{}\n", draws_with(report), gpu::backend_name(report.backend),
+                       report.info.software ? " (a software renderer gains nothing by compute)" : "");
     if (const std::string& fault = gpu::prepare_driver_cache(); !fault.empty())
         fmt::print("shader cache  off: {}\n", printable(fault));
     fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
@@ -111,6 +129,7 @@ void print_json(const std::vector<gpu::BackendReport>& reports) {
             row["version"] = report.info.version;
             row["vendor"] = report.info.vendor;
             row["software"] = report.info.software;
+            row["draws_with"] = draws_with(report);
         } else {
             row["reason"] = report.reason;
         }

@@ -11,6 +11,7 @@
 #include "cli/gl_options.h"
 #include "framework/document/units.h"
 #include "framework/file/frame_stream.h"
+#include "framework/render/draw_with.h"
 
 namespace aftershade::cli {
 
@@ -158,6 +159,11 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     add_diagnosis_options(app, options);
     begin_group("Machine, and code that is not shipped");
     add_backend_option(app, options.backend);
+    app.add_option("--draw-with", options.draw_with,
+                   "Draw with fragment shaders, or with compute shaders where they can give the same "
+                   "picture, which data-centre GPUs run faster; auto: what is faster on this GPU "
+                   "(default: $AFTERSHADE_DRAW_WITH, else auto)")
+        ->check(CLI::IsMember({"auto", "fragment", "compute"}));
     add_plugin_options(app, options.plugins);
 }
 
@@ -244,6 +250,7 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
     run.on_nan = nan_policy(options.on_nan);
     run.drawing.audits = options.audit;
     run.drawing.fuses_passes = !options.apart;
+    run.drawing.draw_with = parse_draw_with(options.draw_with).value_or(DrawWith::automatic);
     // A gap in a stream would shift every frame behind it.
     run.stop_on_error = options.jobs.stop_on_error || options.streams();
     run.drawing.telemetry = !options.telemetry.empty() || !options.telemetry_plot.empty();

@@ -30,6 +30,7 @@ struct RunArguments {
     std::vector<std::string> effect_paths;
     std::string pixel_type = "half";
     std::string backend;
+    std::string draw_with;
     std::string progress = "auto";
     std::string missing = "error";
     std::string on_nan = "warn";

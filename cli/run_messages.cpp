@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -201,12 +202,27 @@ RunObserver RunReporter::observer() {
     return observer;
 }
 
+namespace {
+
+/// Says how the draws ran, where any ran as a compute shader.
+void print_draws(const std::vector<DrawnPass>& draws) {
+    const auto computed = std::ranges::count_if(draws, &DrawnPass::computes);
+    if (computed == 0) return;
+    std::string others;
+    for (const DrawnPass& draw : draws)
+        if (!draw.computes) others += fmt::format("; {} {}", draw.pass, draw.why_drawn);
+    fmt::print(stderr, "{} of {} draws ran as compute shaders{}\n", computed, draws.size(), printable(others));
+}
+
+}  // namespace
+
 void RunReporter::print_tables(const RunReport& report) const {
     fmt::print(stderr, "{:<28} {:>9} {:>9} {:>9}   ms a frame, {} clock\n", "pass", "mean", "min", "max",
                report.clock);
     for (const PassStatistics& pass : report.passes)
         fmt::print(stderr, "{:<28} {:>9.2f} {:>9.2f} {:>9.2f}\n", pass.pass, pass.total_ms / pass.frames,
                    pass.min_ms, pass.max_ms);
+    print_draws(report.draws);
     fmt::print(stderr, "{:<28} {:>9} {:>9}   s in all; decode and encode work beside the frames\n", "stage",
                "busy", "waited");
     for (const Stage& stage : stages_of(report))

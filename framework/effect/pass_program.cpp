@@ -227,9 +227,8 @@ std::string ProgramCache::host_vertex(const std::string& file) const {
     return text;
 }
 
-std::shared_ptr<const gpu::Program> ProgramCache::host(const std::string& file,
-                                                       const std::vector<std::string>& defines,
-                                                       const std::string& vertex) {
+ProgramSources ProgramCache::host_sources(const std::string& file, const std::vector<std::string>& defines,
+                                          const std::string& vertex) const {
     ProgramSources sources;
     sources.vertex = vertex.empty() ? full_screen_ : host_vertex(vertex);
     sources.main.text = read_text_file(glsl_folder_ / "host" / file, ErrorKind::effect);
@@ -238,7 +237,26 @@ std::shared_ptr<const gpu::Program> ProgramCache::host(const std::string& file,
     for (std::string* const text : {&sources.main.text, &sources.vertex})
         if (text != &sources.vertex || !vertex.empty()) text->insert(text->find('\n') + 1, symbols);
     sources.label = "host." + file;
-    return get(sources);
+    return sources;
+}
+
+ProgramSources ProgramCache::full_screen(std::string text, std::string label) const {
+    ProgramSources sources;
+    sources.vertex = full_screen_;
+    sources.main.text = std::move(text);
+    sources.label = std::move(label);
+    return sources;
+}
+
+std::optional<ProgramSources> in_compute_form(ProgramSources draw, const DrawShape& shape,
+                                              std::string& why_not) {
+    // What the host has written behind the author's text has none, nor has a text of its own.
+    draw.main.lines.resize(std::size_t(std::ranges::count(draw.main.text, '\n')), {"<generated>", 1});
+    why_not = to_compute_form(draw.main, shape);
+    if (!why_not.empty()) return std::nullopt;
+    draw.is_compute = true;
+    draw.vertex.clear();
+    return draw;
 }
 
 ProgramSources ProgramCache::sources_of(const FusedProgram& passes, Diagnostics& faults) const {

@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "framework/effect/compute_form.h"
 #include "framework/effect/fused_shader.h"
 #include "framework/effect/image_loads.h"
 #include "framework/effect/program_store.h"
@@ -34,6 +36,10 @@ struct ProgramSources {
         return stage == "vertex" ? vertex_lines : main;
     }
 };
+
+/// A draw as a compute shader; `why_not` says what keeps it from that, and then there is none.
+std::optional<ProgramSources> in_compute_form(ProgramSources draw, const DrawShape& shape,
+                                              std::string& why_not);
 
 /// Programs by their full text, so that equal shaders compile once; those of earlier runs come from `store`.
 /// [the context's thread]
@@ -60,8 +66,14 @@ public:
     bool has(const ProgramSources& sources) const;
     /// A full-screen shader of the host's own, glsl/host/<file>, with symbols defined after its first line.
     /// `vertex`: likewise, empty: over the full screen.
+    ProgramSources host_sources(const std::string& file, const std::vector<std::string>& defines,
+                                const std::string& vertex = "") const;
+    /// The same of a text.
+    ProgramSources full_screen(std::string text, std::string label) const;
     std::shared_ptr<const gpu::Program> host(const std::string& file, const std::vector<std::string>& defines,
-                                             const std::string& vertex = "");
+                                             const std::string& vertex = "") {
+        return get(host_sources(file, defines, vertex));
+    }
     /// Programs made from now on report into a storage block whether llvmpipe ended one of their loops.
     /// [before the first program]
     void guard_loops() { guards_loops_ = true; }

@@ -39,8 +39,9 @@ public:
         bind_textures();
         for (const ImageBinding& image : bindings_.images) {
             const TextureDesc& desc = image.texture->desc();
-            gl_.BindImageTexture(unit(image.binding), image.texture->handle(), image.level, desc.layers > 1,
-                                 0, gl_access(image.access), gl_format(desc.format).internal);
+            gl_.BindImageTexture(unit(image.binding), image.texture->handle(), image.level,
+                                 desc.layers > 1 && image.layer < 0, std::max(0, image.layer),
+                                 gl_access(image.access), gl_format(desc.format).internal);
         }
         bind_buffers(GL_UNIFORM_BUFFER, bindings_.uniforms);
         bind_buffers(GL_SHADER_STORAGE_BUFFER, bindings_.storage);
@@ -356,6 +357,21 @@ void dispatch_indirect(Context& context, const Program& program, const Buffer& g
     check_indirect(program, groups, kCommandBytes);
     const Buffer* const nothing = context.impl().nothing;
     dispatch_from(context, program, nothing ? *nothing : groups, bindings);
+}
+
+void dispatch_over(Context& context, const Program& program, std::span<const Target> targets, int first_unit,
+                   const Bindings& bindings) {
+    check_targets(context.impl().limits, program, targets);
+    check_feedback(program, targets, bindings);
+    std::vector<ImageBinding> images(bindings.images.begin(), bindings.images.end());
+    for (const Target& target : targets)
+        images.push_back({target.texture, first_unit++, target.level, Access::write, target.layer});
+    const TextureDesc& desc = targets.front().texture->desc();
+    const auto groups = [&](int full) {
+        return (side(full, targets.front().level) + kGroupSide - 1) / kGroupSide;
+    };
+    dispatch(context, program, groups(desc.width), groups(desc.height), 1,
+             {bindings.textures, images, bindings.uniforms, bindings.storage});
 }
 
 }  // namespace aftershade::gpu

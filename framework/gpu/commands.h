@@ -36,6 +36,7 @@ struct ImageBinding {
     int binding = 0;  ///< layout(binding = N) of the image
     int level = 0;
     Access access = Access::read_write;
+    int layer = -1;  ///< of an array: the one that is seen, as a 2-D image; -1: all
 };
 
 struct BufferBinding {
@@ -96,5 +97,11 @@ void dispatch(Context& context, const Program& program, int groups_x, int groups
 /// The same with the three numbers at the beginning of `groups` (DispatchIndirectCommand, 12 bytes).
 void dispatch_indirect(Context& context, const Program& program, const Buffer& groups,
                        const Bindings& bindings);
+/// Sides of the work groups of dispatch_over(), texels.
+inline constexpr int kGroupSide = 8;
+/// Dispatches a work group for each square of kGroupSide texels of the targets, which share one size and are
+/// the program's images from `first_unit` on, to be written. Throws as draw() does.
+void dispatch_over(Context& context, const Program& program, std::span<const Target> targets, int first_unit,
+                   const Bindings& bindings);
 
 }  // namespace aftershade::gpu

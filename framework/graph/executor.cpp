@@ -202,6 +202,8 @@ void Executor::run_program(const BoundPass& bound) {
                                  .images = bound.images,
                                  .uniforms = bound.uniforms,
                                  .storage = bound.storage};
+    if (pass.first_target_unit >= 0)
+        return gpu::dispatch_over(context_, *pass.program, bound.targets, pass.first_target_unit, bindings);
     switch (pass.kind) {
         case PassKind::draw: gpu::draw(context_, *pass.program, bound.targets, bindings, pass.blend); break;
         case PassKind::instances:

@@ -30,8 +30,8 @@ public:
             if (graph_.is_fused_away(i)) continue;
             runs_ = std::find(compiled_.passes.begin(), compiled_.passes.end(), i) != compiled_.passes.end();
             const char* const grey = runs_ ? "" : ", color=grey, fontcolor=grey";
-            text_ +=
-                fmt::format("  p{} [shape=box, label=\"{}\"{}];\n", i, label_of(graph_.pass(i).name), grey);
+            text_ += fmt::format("  p{} [shape=box, label=\"{}{}\"{}];\n", i, label_of(graph_.pass(i).name),
+                                 graph_.pass(i).computes() ? "\\ncompute" : "", grey);
             const PassUses uses = uses_of(graph_, i);
             for (const Version& version : uses.needs)
                 if (exists(version)) edge(node(version), fmt::format("p{}", i));

@@ -68,8 +68,8 @@ private:
             fail("clears, but has more than targets; it runs no program and reads nothing");
         if (pass_.kind == PassKind::copy) check_copy();
         if (!draws() && pass_.blend != gpu::Blend::none) fail("blends, but draws nothing");
-        if (pass_.program && pass_.program->is_compute() != (pass_.kind == PassKind::compute))
-            fail(fmt::format("{}, but its program '{}' does the other", draws() ? "draws" : "computes",
+        if (pass_.program && pass_.program->is_compute() != pass_.computes())
+            fail(fmt::format("{}, but its program '{}' does the other", pass_.computes() ? "computes" : "draws",
                              pass_.program->label()));
     }
 

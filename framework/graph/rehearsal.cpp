@@ -61,6 +61,7 @@ PassShape shape_of(const FrameGraph& graph, const CompiledGraph& compiled, const
     shape.kind = pass.kind;
     shape.blend = pass.blend;
     shape.primitive = pass.instances.primitive;
+    shape.first_target_unit = pass.first_target_unit;
     for (const Read& read : pass.reads) {
         const PassShape::Texels read_from = texels(read.texture);
         shape.reads.push_back(
@@ -108,7 +109,9 @@ void rehearse(gpu::Context& context, const gpu::Program& program, const PassShap
         targets.push_back({drawn, target.level, target.layer});
         if (target.fills_mips) with_mips.push_back(drawn);
     }
-    if (shape.kind == PassKind::instances)
+    if (shape.first_target_unit >= 0)
+        gpu::dispatch_over(context, program, targets, shape.first_target_unit, bindings);
+    else if (shape.kind == PassKind::instances)
         gpu::draw_instances(context, program, targets, bindings, {shape.primitive, 1, nullptr}, shape.blend);
     else gpu::draw(context, program, targets, bindings, shape.blend);
     for (gpu::Texture* const texture : with_mips) texture->generate_mips();

@@ -47,6 +47,7 @@ struct PassShape {
     std::vector<Memory> uniforms{};
     gpu::Blend blend = gpu::Blend::none;
     gpu::Primitive primitive = gpu::Primitive::quads;
+    int first_target_unit = -1;  ///< as Pass's
 };
 
 /// `compiled`: the graph's memory.

@@ -51,6 +51,11 @@ int count_value(const CountSpec& count, const ParamReader& params) {
     return count.param.empty() ? count.number : int(std::get<std::int64_t>(params.get(count.param)));
 }
 
+std::vector<std::string> copy_defines(gpu::TextureFormat format) {
+    if (gpu::is_integer(format)) return {"COPY_UINT"};
+    return {};
+}
+
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height) {
     const auto with_room = [&](int side, int axis) {
         const int room = int(std::ceil(side * grid.room[axis]));
@@ -81,7 +86,7 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       programs_({tools.context, tools.programs, tools.status,
                  tools.options.fuses_passes && !tools.options.wants_each_pass(), !tools.options.keeps_steps,
                  tools.options.keeps_steps || tools.programs.is_guarding_loops(),
-                 tools.options.compile_threads}),
+                 tools.options.compile_threads, tools.options.draw_with == DrawWith::compute}),
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {
@@ -314,13 +319,12 @@ void GraphBuilder::keep_histories(StepBuild& build) {
 
 void GraphBuilder::add_copy(StepBuild& build, const std::string& name, graph::TextureHandle from,
                             graph::TextureHandle to) {
-    const bool is_integer = gpu::is_integer(graph_.textures()[std::size_t(from.texture)].desc.format);
     graph::Pass pass;
     pass.name = build.step.name + "." + name + ".keep";
-    pass.program = tools_.programs.host(
-        "copy.frag", is_integer ? std::vector<std::string>{"COPY_UINT"} : std::vector<std::string>{});
     pass.reads.push_back({from, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(from)});
     pass.targets.push_back({to});
+    programs_.give_host(graph_, pass, "copy.frag",
+                        copy_defines(graph_.textures()[std::size_t(from.texture)].desc.format));
     (void)graph_.add_pass(std::move(pass));
 }
 
@@ -348,10 +352,10 @@ void GraphBuilder::add_mix(StepBuild& build) {
             defines = {"MASK_FILE"};
             pass.reads.push_back({mask_of(build), 2, gpu::Filter::linear});
         }
-        pass.program = tools_.programs.host("mix.frag", defines);
         bind_block(build, BlockKind::mix, pass);
         const gpu::TextureDesc desc = graph_.textures()[std::size_t(build.textures.at(name).texture)].desc;
         pass.targets.push_back({graph_.create_texture(pass.name, desc)});
+        programs_.give_host(graph_, pass, "mix.frag", defines);
         build.textures[name] = graph_.add_pass(std::move(pass)).targets[0];
     }
 }

@@ -122,6 +122,8 @@ private:
 
 /// Extent of a grid over a working grid of width x height px.
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height);
+/// What glsl/host/copy.frag is compiled with.
+std::vector<std::string> copy_defines(gpu::TextureFormat format);
 /// One number for all four, or four.
 std::array<double, 4> four_values(const std::vector<double>& values);
 /// A count's number, or the value of the int parameter that it names.

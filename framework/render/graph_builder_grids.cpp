@@ -49,7 +49,6 @@ graph::TextureHandle GraphBuilder::on_grid(graph::TextureHandle handle, const In
     graph::Pass pass;
     pass.name = graph_.textures()[std::size_t(handle.texture)].name +
                 (is_square_ ? kToSquarePixels : kToStoredPixels);
-    pass.program = tools_.programs.host("square_pixels.frag", defines);
     Std140Writer block;
     for (const std::int64_t number : {std::int64_t(square_.stretch.axis), square_.stretch.to,
                                       square_.stretch.from, std::int64_t(square_.phase)})
@@ -58,6 +57,7 @@ graph::TextureHandle GraphBuilder::on_grid(graph::TextureHandle handle, const In
     pass.reads.push_back({handle, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(handle)});
     desc = {width_, height_, desc.format};
     pass.targets.push_back({graph_.create_texture(pass.name, desc)});
+    programs_.give_host(graph_, pass, "square_pixels.frag", defines);
     return converted_[{handle.texture, handle.version, is_single_}] =
                graph_.add_pass(std::move(pass)).targets.front();
 }

@@ -140,9 +140,7 @@ void GraphBuilder::add_copy_pass(StepBuild& build, const PassSpec& spec) {
         pass.kind = graph::PassKind::copy;
         if (b.mips > 1) pass.reads.front().level = pass.targets.front().level = -1;
     } else {
-        pass.program = tools_.programs.host("copy.frag", gpu::is_integer(a.format)
-                                                             ? std::vector<std::string>{"COPY_UINT"}
-                                                             : std::vector<std::string>{});
+        programs_.give_host(graph_, pass, "copy.frag", copy_defines(a.format));
     }
     build.textures[name] = graph_.add_pass(std::move(pass)).targets.front();
 }
@@ -218,13 +216,16 @@ std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const 
     return {width, height, 1 / width, 1 / height};
 }
 
-/// Of glsl/host/tiles.vert.
+/// Of glsl/host/tiles.vert, and behind it for compute shaders how many tiles the list has across and down.
 std::vector<std::byte> GraphBuilder::tiles_block(const StepBuild& build, const PassSpec& spec,
                                                  const PassBindings& bindings) const {
     const std::array<float, 4> grid = tile_grid_size(build, spec, bindings);
+    const TileListSpec& list = *build.manifest().find_tile_list(spec.over);
+    const int side = count_value(list.tile, build.params);
     Std140Writer block;
     block.add(std::span<const float>(grid));
-    block.add(std::int32_t(count_value(build.manifest().find_tile_list(spec.over)->tile, build.params)));
+    block.add(std::int32_t(side));
+    for (const float texels : listed_size(build, list)) block.add(std::int32_t((int(texels) + side - 1) / side));
     return block.finish();
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace aftershade {
 
 /// The passes of a fusion as one pass of the graph and one program; bindings rise from part to part.
@@ -134,10 +136,26 @@ int PassPrograms::count_blocks(const graph::FrameGraph& graph, int pass) {
     }));
 }
 
+/// A way to run a pass: its program, and what it binds for that.
+struct PassPrograms::Form {
+    std::shared_ptr<const ProgramSources> sources;
+    std::vector<graph::ImageUse> images;
+    int first_target_unit = -1;
+};
+
 /// A pass's texts, and what is wrong with them.
 struct PassPrograms::Assembled {
-    std::shared_ptr<const ProgramSources> sources;
+    Form own;                     ///< as the manifest has it
+    std::optional<Form> compute;  ///< of a draw
+    std::string why_drawn;        ///< why there is none, where one is wanted
     Diagnostics faults;
+
+    const Form& form() const { return compute ? *compute : own; }
+    void give(graph::Pass& pass) const {
+        pass.images = form().images;
+        pass.first_target_unit = form().first_target_unit;
+        pass.why_drawn = why_drawn;
+    }
 };
 
 struct PassPrograms::FusedAssembled {
@@ -164,25 +182,104 @@ std::vector<PassPrograms::FusedAssembled> PassPrograms::assemble_fusions(const g
         }
         fused.maker.add_targets();
         ProgramSources sources = tools_.programs.sources_of(fused.maker.program(), fused.texts.faults);
-        load_images(graph, fused.maker.pass(), sources.main);
-        fused.texts.sources = std::make_shared<const ProgramSources>(std::move(sources));
+        assemble_forms(graph, fused.maker.pass(), std::move(sources), nullptr, fused.texts);
         fusions.push_back(std::move(fused));
     }
     return fusions;
 }
 
 /// Where that is the faster way, the pass loads from images what its text fetches.
-void PassPrograms::load_images(const graph::FrameGraph& graph, graph::Pass& pass,
-                               ShaderSource& source) const {
-    const int units = tools_.context.info().load_units;
-    if (units == 0) return;
-    std::map<int, gpu::TextureFormat> formats;
-    for (const graph::Read& read : pass.reads)
-        formats[read.binding] = graph.textures()[std::size_t(read.texture.texture)].desc.format;
-    for (const ImageLoad& load : load_as_images(source, formats, int(pass.images.size()), units)) {
-        const auto read = std::ranges::find(pass.reads, load.sampler, &graph::Read::binding);
-        pass.images.push_back({read->texture, load.unit, gpu::Access::read, std::max(0, read->level)});
+PassPrograms::Form PassPrograms::with_loads(const graph::FrameGraph& graph, const graph::Pass& pass,
+                                            ProgramSources sources, int first_unit) const {
+    Form form{nullptr, pass.images};
+    if (const int units = tools_.context.info().load_units; units > 0) {
+        std::map<int, gpu::TextureFormat> formats;
+        for (const graph::Read& read : pass.reads)
+            formats[read.binding] = graph.textures()[std::size_t(read.texture.texture)].desc.format;
+        for (const ImageLoad& load : load_as_images(sources.main, formats, first_unit, units)) {
+            const auto read = std::ranges::find(pass.reads, load.sampler, &graph::Read::binding);
+            form.images.push_back({read->texture, load.unit, gpu::Access::read, std::max(0, read->level)});
+        }
     }
+    form.sources = std::make_shared<const ProgramSources>(std::move(sources));
+    return form;
+}
+
+namespace {
+
+/// By the manifest: "blends"; what the shader's text forbids is found by itself.
+std::string fault_of_computing(const graph::Pass& pass, const PassSpec* spec) {
+    if (pass.blend != gpu::Blend::none) return "blends";
+    if (spec && !spec->vertex.empty()) return "has a vertex shader";
+    if (pass.kind == graph::PassKind::instances && (!spec || spec->over.empty())) return "draws instances";
+    return "";
+}
+
+}  // namespace
+
+/// Its targets become the images behind the pass's own.
+std::optional<ProgramSources> PassPrograms::in_compute(const graph::FrameGraph& graph,
+                                                       const graph::Pass& pass, const ProgramSources& sources,
+                                                       const ShaderContext* shader,
+                                                       std::string& why_not) const {
+    why_not = fault_of_computing(pass, shader ? shader->pass : nullptr);
+    if (!why_not.empty()) return std::nullopt;
+    const auto desc_of = [&](graph::TextureHandle texture) -> const gpu::TextureDesc& {
+        return graph.textures()[std::size_t(texture.texture)].desc;
+    };
+    DrawShape shape;
+    shape.first_target_unit = int(pass.images.size());
+    for (const graph::Target& target : pass.targets)
+        shape.targets.push_back(desc_of(target.texture).format);
+    shape.has_levels = std::ranges::any_of(pass.reads, [&](const graph::Read& read) {
+        return read.level < 0 && desc_of(read.texture).mips > 1;
+    });
+    if (pass.kind == graph::PassKind::instances)
+        shape.tile_runs = shader->manifest->find_tile_list(shader->pass->over)->runs();
+    return in_compute_form(sources, shape, why_not);
+}
+
+void PassPrograms::assemble_forms(const graph::FrameGraph& graph, const graph::Pass& pass,
+                                  ProgramSources sources, const ShaderContext* shader,
+                                  Assembled& texts) const {
+    if (texts.faults.has_errors()) {
+        texts.own = {std::make_shared<const ProgramSources>(std::move(sources)), pass.images};
+        return;
+    }
+    const int first_unit = int(pass.images.size());
+    if (tools_.computes && !sources.is_compute)
+        if (auto computes = in_compute(graph, pass, sources, shader, texts.why_drawn)) {
+            texts.compute = with_loads(graph, pass, std::move(*computes), first_unit + int(pass.targets.size()));
+            texts.compute->first_target_unit = first_unit;
+        }
+    texts.own = with_loads(graph, pass, std::move(sources), first_unit);
+}
+
+/// Its program in the form that the driver takes; nullptr where it takes no compute shader of it.
+std::shared_ptr<const gpu::Program> PassPrograms::compute_program(Assembled& texts) const {
+    if (!texts.compute) return nullptr;
+    try {
+        return tools_.programs.get(*texts.compute->sources);
+    } catch (const gpu::ShaderError& error) {
+        const auto& messages = error.messages();
+        texts.why_drawn = fmt::format("the driver refuses it as a compute shader{}",
+                                      messages.empty() ? "" : ": " + messages.front().text);
+        texts.compute.reset();
+        return nullptr;
+    }
+}
+
+void PassPrograms::give_host(const graph::FrameGraph& graph, graph::Pass& pass, const std::string& file,
+                             const std::vector<std::string>& defines) const {
+    Assembled texts;
+    const ProgramSources sources = tools_.programs.host_sources(file, defines);
+    if (tools_.computes)
+        if (auto computes = in_compute(graph, pass, sources, nullptr, texts.why_drawn))
+            texts.compute = {std::make_shared<const ProgramSources>(std::move(*computes)), pass.images,
+                             int(pass.images.size())};
+    pass.program = compute_program(texts);
+    if (!pass.program) pass.program = tools_.programs.get(sources);
+    texts.give(pass);
 }
 
 bool PassPrograms::is_compiled(const graph::FrameGraph& graph, int pass) const {
@@ -190,7 +287,7 @@ bool PassPrograms::is_compiled(const graph::FrameGraph& graph, int pass) const {
 }
 
 std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
-    graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions) const {
+    const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions) const {
     std::map<int, Assembled> others;
     const auto is_fused = [&](int pass) {
         return std::ranges::any_of(fusions, [&](const FusedAssembled& fused) {
@@ -201,8 +298,7 @@ std::map<int, PassPrograms::Assembled> PassPrograms::assemble_others(
         if (is_fused(pass) || !is_compiled(graph, pass)) continue;
         Assembled& texts = others[pass];
         ProgramSources sources = tools_.programs.sources_of(added.shader, texts.faults);
-        if (!texts.faults.has_errors()) load_images(graph, graph.pass(pass), sources.main);
-        texts.sources = std::make_shared<const ProgramSources>(std::move(sources));
+        assemble_forms(graph, graph.pass(pass), std::move(sources), &added.shader, texts);
     }
     return others;
 }
@@ -220,11 +316,12 @@ void PassPrograms::compile_ahead(const graph::FrameGraph& graph, const std::vect
             with_fusions.fuse(fused.passes(), fused.maker.pass(), fused.maker.fusion().targets);
     const graph::CompiledGraph compiled = with_fusions.compile(tools_.shares_memory);
     std::map<int, PassToCompile> missing;  // in the order of the passes
-    const auto add = [&](int pass, const Assembled& texts, const graph::Pass& shape) {
+    const auto add = [&](int pass, const Assembled& texts, graph::Pass shape) {
         if (texts.faults.has_errors() || added_.at(pass).step->is_foreign ||
-            tools_.programs.has(*texts.sources))
+            tools_.programs.has(*texts.form().sources))
             return;
-        missing[pass] = {shape.name, texts.sources, graph::shape_of(with_fusions, compiled, shape),
+        texts.give(shape);
+        missing[pass] = {shape.name, texts.form().sources, graph::shape_of(with_fusions, compiled, shape),
                          std::ranges::binary_search(compiled.passes, pass)};
     };
     for (const FusedAssembled& fused : fusions) add(fused.passes().back(), fused.texts, fused.maker.pass());
@@ -247,12 +344,17 @@ void PassPrograms::finish(graph::FrameGraph& graph, std::vector<BlockBinding>& b
     for (const auto& [pass, added] : added_) {
         if (graph.is_fused_away(pass) || !is_compiled(graph, pass)) continue;
         const StatusScope scope(tools_.status, compiling(added, added.shader.pass->name));
-        const auto assembled = others.find(pass);
+        // Of a fusion that failed, nothing has been assembled.
+        const auto [assembled, is_new] = others.try_emplace(pass);
+        Assembled& texts = assembled->second;
+        if (is_new)
+            assemble_forms(graph, graph.pass(pass), tools_.programs.sources_of(added.shader, texts.faults),
+                           &added.shader, texts);
         const CompileAhead::LinkScope linking(ahead_.get(), graph.pass(pass).name);
-        graph.pass(pass).program =
-            assembled == others.end()
-                ? tools_.programs.get(added.shader)
-                : tools_.programs.get(added.shader, *assembled->second.sources, assembled->second.faults);
+        std::shared_ptr<const gpu::Program> program = compute_program(texts);
+        if (!program) program = tools_.programs.get(added.shader, *texts.own.sources, texts.faults);
+        texts.give(graph.pass(pass));
+        graph.pass(pass).program = std::move(program);
     }
 }
 
@@ -264,10 +366,12 @@ void PassPrograms::fuse(graph::FrameGraph& graph, FusedAssembled& fused, std::ve
     graph::Pass pass = fused.maker.pass();
     try {
         const CompileAhead::LinkScope linking(ahead_.get(), pass.name);
-        pass.program = tools_.programs.get(*fused.texts.sources);
+        pass.program = compute_program(fused.texts);
+        if (!pass.program) pass.program = tools_.programs.get(*fused.texts.own.sources);
     } catch (const gpu::ShaderError&) {
         return;
     }
+    fused.texts.give(pass);
     point_to_fused(blocks, fused.passes(), fused.maker.program().parts);
     graph.fuse(fused.passes(), std::move(pass), fused.maker.fusion().targets);
 }

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,7 @@ public:
         /// found.
         bool compiles_culled = false;
         int compile_threads = 0;  ///< beside the caller's
+        bool computes = false;    ///< draws become compute shaders where they can
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 
@@ -40,6 +42,9 @@ public:
     ShaderTexts& texts() { return texts_; }
     /// The pass that will have this index in the graph.
     void add(int pass, const ShaderContext& shader, const PipelineStep& step);
+    /// Gives a draw over all of its targets a program of glsl/host.
+    void give_host(const graph::FrameGraph& graph, graph::Pass& pass, const std::string& file,
+                   const std::vector<std::string>& defines) const;
     /// Gives the graph's passes their programs. Fused ones take the place of the last of theirs, and `blocks`
     /// point to them. `divide_at`: no pass from this index on joins one before it. Throws
     /// Error(ErrorKind::effect) for the faults of a shader.
@@ -53,13 +58,21 @@ private:
         const PipelineStep* step = nullptr;
     };
     bool is_compiled(const graph::FrameGraph& graph, int pass) const;
+    struct Form;
     struct Assembled;
     struct FusedAssembled;
     std::vector<FusedAssembled> assemble_fusions(const graph::FrameGraph& graph,
                                                  const graph::CompiledGraph& compiled, int divide_at);
-    std::map<int, Assembled> assemble_others(graph::FrameGraph& graph,
+    std::map<int, Assembled> assemble_others(const graph::FrameGraph& graph,
                                              const std::vector<FusedAssembled>& fusions) const;
-    void load_images(const graph::FrameGraph& graph, graph::Pass& pass, ShaderSource& source) const;
+    Form with_loads(const graph::FrameGraph& graph, const graph::Pass& pass, ProgramSources sources,
+                    int first_unit) const;
+    std::optional<ProgramSources> in_compute(const graph::FrameGraph& graph, const graph::Pass& pass,
+                                             const ProgramSources& sources, const ShaderContext* shader,
+                                             std::string& why_not) const;
+    void assemble_forms(const graph::FrameGraph& graph, const graph::Pass& pass, ProgramSources sources,
+                        const ShaderContext* shader, Assembled& texts) const;
+    std::shared_ptr<const gpu::Program> compute_program(Assembled& texts) const;
     void compile_ahead(const graph::FrameGraph& graph, const std::vector<FusedAssembled>& fusions,
                        const std::map<int, Assembled>& others);
     void fuse(graph::FrameGraph& graph, FusedAssembled& fused, std::vector<BlockBinding>& blocks);

@@ -8,6 +8,7 @@
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
 #include "framework/look/pixel_shape.h"
+#include "framework/render/draw_with.h"
 #include "framework/render/graph_builder.h"
 #include "framework/render/history_file.h"
 
@@ -63,6 +64,7 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
       status_(natives.status),
       natives_(natives),
       options_(options) {
+    options_.draw_with = chosen_draw_with(context_, options.draw_with, *programs_);
     options_.compile_threads = CompileAhead::useful_threads(context_, options.compile_threads);
     const bool guards = options.guards_loops || options.audits;
     if (!guards || context_.info().renderer.find("llvmpipe") == std::string::npos) return;
@@ -304,6 +306,18 @@ FrameResult PipelineRenderer::render_again(const FrameInputs& frame, const std::
 
 std::string PipelineRenderer::graph_dot() const {
     return built_ ? graph::to_dot(built_->executor->graph(), built_->executor->compiled()) : "";
+}
+
+std::vector<DrawnPass> PipelineRenderer::draws() const {
+    std::vector<DrawnPass> draws;
+    if (!built_) return draws;
+    const graph::FrameGraph& graph = built_->executor->graph();
+    for (const int index : built_->executor->compiled().passes) {
+        const graph::Pass& pass = graph.pass(index);
+        if (pass.kind == graph::PassKind::draw || pass.kind == graph::PassKind::instances)
+            draws.push_back({pass.name, pass.computes(), pass.why_drawn});
+    }
+    return draws;
 }
 
 std::pair<std::uint64_t, std::uint64_t> PipelineRenderer::graph_bytes() const {

@@ -36,6 +36,13 @@ struct FrameResult {
     std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
 };
 
+/// How a draw runs.
+struct DrawnPass {
+    std::string pass;
+    bool computes = false;  ///< as a compute shader
+    std::string why_drawn;  ///< why not, where that is wanted
+};
+
 /// A frame graph for one size and one choice of passes (framework/render/built_graph.h).
 struct BuiltGraph;
 struct FrameBefore;
@@ -98,6 +105,8 @@ public:
 
     /// The graph of the last frame in Graphviz's language; "" before the first.
     std::string graph_dot() const;
+    /// The draws of the last frame's graph, in its order.
+    std::vector<DrawnPass> draws() const;
     /// How often the graph was built.
     int graphs_built() const { return graphs_built_; }
     /// Of the last frame: bytes of all textures and buffers, and what they would be without aliasing.

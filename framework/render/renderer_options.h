@@ -3,6 +3,10 @@
 
 namespace aftershade {
 
+/// Which of a GPU's ways draws: data-centre cards draw fragments with a few of their multiprocessors, and
+/// compute with all. The picture has the same bits.
+enum class DrawWith { automatic, fragment, compute };
+
 struct RendererOptions {
     bool keeps_steps = false;   ///< each texture has memory of its own, so that it lives until the next frame
     bool fuses_passes = true;   ///< passes that can run as one do, unless each is wanted by itself
@@ -12,6 +16,7 @@ struct RendererOptions {
                                 ///< wrong, is an error of its pass; other renderers end none
     bool telemetry = false;     ///< textures of the effects' telemetry share no memory and are read back
     int compile_threads = 0;    ///< beside the one that draws, where a driver compiles on the processor
+    DrawWith draw_with = DrawWith::automatic;
 
     bool wants_each_pass() const { return keeps_steps || audits; }
 };

@@ -179,6 +179,7 @@ public:
             frame(i);
         }
         report_.graph_dot = renderer_.graph_dot();
+        report_.draws = renderer_.draws();
         std::tie(report_.bytes, report_.bytes_unaliased) = renderer_.graph_bytes();
         // One of fewer frames would pass for that of the run.
         report_.history_saved = !run.history_out.empty() && any_rendered_ && !report_.interrupted;

@@ -61,6 +61,7 @@ struct RunReport {
     std::string clock;                      ///< gpu::Timer::clock_name()
     std::vector<FrameTelemetry> telemetry;  ///< of every frame, where it was requested
     std::string graph_dot;                  ///< of the last frame, in Graphviz's language
+    std::vector<DrawnPass> draws;           ///< likewise
     std::uint64_t bytes = 0;                ///< of its textures and buffers
     std::uint64_t bytes_unaliased = 0;      ///< what these would take if none shared memory
 
