@@ -39,6 +39,7 @@ struct RunArguments {
     bool keep_channels = false;
     bool audit = false;
     bool apart = false;
+    bool plain = false;
     bool explain = false, verbose = false;
     bool watch = false;
     std::string telemetry;

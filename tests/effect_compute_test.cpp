@@ -44,9 +44,8 @@ protected:
         EXPECT_FALSE(diagnostics.has_errors()) << faults_of(diagnostics);
         Screen& on = screen(backend);
         // Guarded programs are others.
-        const auto programs = drawing.guards_loops
-                                  ? std::make_shared<ProgramCache>(on.context, kRoot / "glsl")
-                                  : on.programs;
+        const auto programs =
+            drawing.guards_loops ? std::make_shared<ProgramCache>(on.context, kRoot / "glsl") : on.programs;
         PipelineRenderer renderer(on.context, pipeline, programs, {}, drawing);
         std::vector<std::string> roles;
         for (const OutputSpec& output : manifest().outputs) roles.push_back(output.role);
@@ -65,7 +64,8 @@ protected:
     void expect_same(const Values& values, gpu::Backend backend) {
         const Run drawn = run_with(values, backend, {.draw_with = DrawWith::fragment});
         const Run computed = run_with(values, backend, {.draw_with = DrawWith::compute});
-        const std::string where = std::string(gpu::backend_name(backend)) + ": " + look_of(GetParam(), values);
+        const std::string where =
+            std::string(gpu::backend_name(backend)) + ": " + look_of(GetParam(), values);
         const std::string difference = first_difference(drawn, computed);
         if (!difference.empty()) {
             const std::string fault = fault_of_loops(values, backend);
@@ -87,11 +87,10 @@ protected:
         return "";
     }
 
-    /// llvmpipe counts iterations of several pixels together, fragments' and invocations' by other groups, and
-    /// ends loops after 65,535: then neither picture is right.
+    /// llvmpipe counts iterations of several pixels together, fragments' and invocations' by other groups,
+    /// and ends loops after 65,535: then neither picture is right.
     std::string fault_of_loops(const Values& values, gpu::Backend backend) const {
-        for (const DrawWith way : {DrawWith::fragment, DrawWith::compute})
-            try {
+        for (const DrawWith way : {DrawWith::fragment, DrawWith::compute}) try {
                 run_with(values, backend, {.guards_loops = true, .draw_with = way});
             } catch (const Error& error) {
                 return error.what();
@@ -120,6 +119,15 @@ TEST_P(EffectAsCompute, GivesTheBitsOfFragments) {
         for (const ParamValue& value : extremes_of(spec))
             if (value != spec.default_value) expect_same({{spec.name, value}}, backends().front());
     print_draws();
+}
+
+/// --plain.
+TEST_P(EffectAsCompute, GivesTheBitsOfPlainDrawing) {
+    const auto backend = backends().front();
+    const Run drawn = run_with({}, backend, {.draw_with = DrawWith::fragment});
+    const Run plain =
+        run_with({}, backend, {.fuses_passes = false, .plain = true, .draw_with = DrawWith::fragment});
+    EXPECT_EQ(first_difference(drawn, plain), "");
 }
 
 }  // namespace

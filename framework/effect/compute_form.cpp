@@ -56,13 +56,21 @@ void main() {
 )";
 
 /// Of fragment shaders alone.
-constexpr std::array<std::string_view, 12> kDerivatives = {
-    "dFdx",       "dFdy",     "fwidth",         "dFdxFine",             "dFdyFine",            "fwidthFine",
-    "dFdxCoarse", "dFdyCoarse", "fwidthCoarse", "interpolateAtCentroid", "interpolateAtSample",
-    "interpolateAtOffset"};
+constexpr std::array<std::string_view, 12> kDerivatives = {"dFdx",
+                                                           "dFdy",
+                                                           "fwidth",
+                                                           "dFdxFine",
+                                                           "dFdyFine",
+                                                           "fwidthFine",
+                                                           "dFdxCoarse",
+                                                           "dFdyCoarse",
+                                                           "fwidthCoarse",
+                                                           "interpolateAtCentroid",
+                                                           "interpolateAtSample",
+                                                           "interpolateAtOffset"};
 /// Functions that choose a level by derivatives; a macro may call one.
-constexpr std::array<std::string_view, 5> kLevelByDerivatives = {
-    "texture", "textureOffset", "textureProj", "textureProjOffset", "textureQueryLod"};
+constexpr std::array<std::string_view, 5> kLevelByDerivatives = {"texture", "textureOffset", "textureProj",
+                                                                 "textureProjOffset", "textureQueryLod"};
 
 class ComputeForm {
 public:
@@ -177,15 +185,17 @@ private:
         for (std::size_t i = 0; i < outputs_.size(); ++i) {
             const gpu::TextureFormat format = shape_.targets[i];
             const std::string target = "aftershade_target_" + std::to_string(i);
-            const std::string_view prefix =
-                !gpu::is_integer(format) ? "" : gpu::is_signed_integer(format) ? "i" : "u";
+            const std::string_view prefix = !gpu::is_integer(format)         ? ""
+                                            : gpu::is_signed_integer(format) ? "i"
+                                                                             : "u";
             source_.text += "layout(binding = " + std::to_string(shape_.first_target_unit + int(i)) + ", " +
                             std::string(gpu::texture_format_name(format)) + ") restrict writeonly uniform " +
                             std::string(prefix) + "image2D " + target + ";\n";
-            stores += "    imageStore(" + target + ", aftershade_at, aftershade_texel(" + outputs_[i] + "));\n";
+            stores +=
+                "    imageStore(" + target + ", aftershade_at, aftershade_texel(" + outputs_[i] + "));\n";
         }
         source_.text += shape_.tile_runs ? filled(kDrawnTiles, {{"binding", std::to_string(kTilesBinding)},
-                                                           {"runs", *shape_.tile_runs}})
+                                                                {"runs", *shape_.tile_runs}})
                                          : kDrawnWhole;
         source_.text += kComputeMain + stores + "}\n";
     }
