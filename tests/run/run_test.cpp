@@ -1,5 +1,6 @@
 // Whole runs: when they give back what they hold on the GPU.
 #include "framework/run/run_frames.h"
+#include "tests/backends.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ protected:
         std::optional<gpu::Context> context;
         int endings = 0;
         RunSetup setup{
-            [&]() -> gpu::Context& { return context ? *context : context.emplace(gpu::Backend::software); },
+            [&]() -> gpu::Context& { return context ? *context : context.emplace(gpu::test_backend()); },
             bound.pipeline(),
             *sequence,
             reader,
