@@ -168,6 +168,11 @@ void add_run_options(CLI::App& app, RunArguments& options) {
                    "picture, which data-centre GPUs run faster; auto: what is faster on this GPU "
                    "(default: $AFTERSHADE_DRAW_WITH, else auto)")
         ->check(CLI::IsMember({"auto", "fragment", "compute"}));
+    app.add_option(
+           "--read-ahead", options.read_ahead,
+           "Frames to read, and frames to write, while one is rendered (1 to 64; default: a quarter of "
+           "the cores, at most 8, as far as memory has room)")
+        ->check(CLI::Range(1, 64));
     add_plugin_options(app, options.plugins);
 }
 
@@ -252,6 +257,7 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
         diagnostics.error({"--trace " + options.trace}, "must end in .json");
     run.missing = missing_frame(options.missing);
     run.on_nan = nan_policy(options.on_nan);
+    run.frames_ahead = options.read_ahead;
     run.drawing.audits = options.audit;
     run.drawing.fuses_passes = !options.apart && !options.plain;
     run.drawing.plain = options.plain;
