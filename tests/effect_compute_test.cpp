@@ -1,5 +1,7 @@
 // Every effect drawn by compute shaders: the bits of fragments, with every value of what its programs depend
 // on, and at the ends of every other parameter. Prints the draws that stay fragments, with the reason.
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -69,8 +71,10 @@ protected:
         const std::string difference = first_difference(drawn, computed);
         if (!difference.empty()) {
             const std::string fault = fault_of_loops(values, backend);
-            if (fault.empty()) ADD_FAILURE() << difference << " on " << where;
-            else std::cout << "another picture on " << where << "\n    " << fault << "\n";
+            if (fault.empty()) {
+                EXPECT_LE(largest_difference(drawn, computed), most_difference()) << where;
+            }
+            std::cout << difference << " differs on " << where << "\n    " << fault << "\n";
         }
         for (const DrawnPass& draw : computed.draws) {
             EXPECT_EQ(draw.computes, draw.why_drawn.empty()) << draw.pass << ": " << draw.why_drawn;
@@ -86,6 +90,24 @@ protected:
                     return role + " of frame " + std::to_string(i);
         return "";
     }
+
+    /// Of a value, over the larger one or 1.
+    static double largest_difference(const Run& drawn, const Run& computed) {
+        double largest = 0;
+        for (std::size_t i = 0; i < drawn.frames.size(); ++i)
+            for (const auto& [role, image] : drawn.frames[i].images) {
+                const auto other = computed.frames[i].images.at(role).floats();
+                for (std::size_t k = 0; k < other.size(); ++k) {
+                    const double a = image.floats()[k], b = other[k];
+                    largest = std::max(largest, std::abs(a - b) / std::max({1.0, std::abs(a), std::abs(b)}));
+                }
+            }
+        return largest;
+    }
+
+    /// docs/gpu.md: at a lens of 0.5 mm, llvmpipe computes the visible share of eight pixels in another last
+    /// place, and it is rounded to half.
+    double most_difference() const { return GetParam() == "dof" ? 0.0005 : 0; }
 
     /// llvmpipe counts iterations of several pixels together, fragments' and invocations' by other groups,
     /// and ends loops after 65,535: then neither picture is right.

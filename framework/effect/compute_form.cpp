@@ -18,9 +18,10 @@ namespace {
 constexpr std::string_view kFragCoord = "as_FragCoord";
 constexpr std::string_view kDrawMain = "aftershade_draw_pixel";
 
-/// Before the text, which may read gl_FragCoord where it initialises a global variable.
+/// Before the text, which may read gl_FragCoord where it initialises a global variable. `precise`: compilers
+/// would add the 0.5 to constants of the author's.
 constexpr const char* kComputeHead = R"(layout(local_size_x = $side, local_size_y = $side) in;
-vec4 as_FragCoord = vec4(vec2(gl_GlobalInvocationID.xy) + 0.5, 0.0, 1.0);
+precise vec4 as_FragCoord = vec4(vec2(gl_GlobalInvocationID.xy) + 0.5, 0.0, 1.0);
 bool aftershade_is_discarded = false;
 )";
 

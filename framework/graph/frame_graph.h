@@ -125,7 +125,7 @@ struct Pass {
     /// as images: the unit of the first. -1: fragments draw them.
     int first_target_unit = -1;
     std::string
-        why_drawn{};  ///< why a compute shader cannot do that; "" where it does, or none was asked for
+        why_drawn{};  ///< why a compute shader cannot do that; "" where it does, or none is wanted
 
     bool computes() const { return kind == PassKind::compute || first_target_unit >= 0; }
 };
