@@ -2,17 +2,14 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <string_view>
 
 #include "framework/base/atomic_file.h"
+#include "framework/base/child_process.h"
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
-#include "framework/base/text.h"
 
 extern char** environ;
 
@@ -22,13 +19,6 @@ namespace {
 
 constexpr const char* kNeedsDot =
     "an .svg needs Graphviz's 'dot' (Debian package graphviz); write a .dot instead";
-
-bool is_on_path(const std::string& program) {
-    const char* const path = std::getenv("PATH");
-    for (const std::string_view folder : split(path ? path : "/bin:/usr/bin", ':'))
-        if (access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
-    return false;
-}
 
 void run_dot(const std::string& dot_file, const std::string& svg_file) {
     std::string name = "dot", type = "-Tsvg", output = "-o" + svg_file, input = dot_file;
@@ -50,7 +40,7 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 }  // namespace
 
 void require_graph_writer(const std::string& path) {
-    if (path.ends_with(".svg") && !is_on_path("dot"))
+    if (path.ends_with(".svg") && program_on_path("dot").empty())
         throw Error(ErrorKind::output, "--graph " + path + ": " + kNeedsDot);
 }
 

@@ -22,6 +22,7 @@
 #include "cli/run_workers.h"
 #include "cli/stream_options.h"
 #include "cli/verbs.h"
+#include "cli/video_output.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/cores.h"
 #include "framework/base/data_path.h"
@@ -172,12 +173,17 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
                   const std::vector<std::filesystem::path>& profile_documents,
                   const std::atomic<bool>& stop) {
     std::optional<FrameStream> stream;
+    std::optional<VideoEncoder> video;
     if (run.outputs.stream_format) {
-        if (options.progress != "none" && options.progress != "json")
-            std::cerr << kStandardOutput << ": " << options.stream.format << "; to read the frames: "
-                      << ffmpeg_command(reader, run.sequence, run.settings, run.outputs) << " OUTPUT\n";
-        stream.emplace(FrameStream::of_standard_output(*run.outputs.stream_format));
-        run.outputs.stream = &*stream;
+        const std::string input = ffmpeg_input(reader, run.sequence, run.settings, run.outputs);
+        if (options.stream_output() != kStandardOutput) {
+            run.outputs.stream = &video.emplace(options.stream_output(), input).frames();
+        } else {
+            if (options.progress != "none" && options.progress != "json")
+                std::cerr << kStandardOutput << ": " << options.stream.format
+                          << "; to read the frames: ffmpeg " << input << " -i - OUTPUT\n";
+            run.outputs.stream = &stream.emplace(FrameStream::of_standard_output(*run.outputs.stream_format));
+        }
     }
     const int cores = options.jobs.worker_threads > 0 ? options.jobs.worker_threads : allotted_cores();
     set_exr_threads(cores);
@@ -198,9 +204,17 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
                              run.settings,     run.outputs, parse_progress(options.progress),
                              profile_documents};
     const bool resumes =
-        !options.watch && !stream && options.resume.keeps_journal(run.settings.frames.size());
+        !options.watch && !run.outputs.stream && options.resume.keeps_journal(run.settings.frames.size());
     if (resumes || options.resume.dry_run) return render_stale(session, *run.bound, stop);
     const ExitCode code = render(session, session.run, pipeline, stop);
+    if (video) {
+        if (code != ExitCode::done)
+            std::cerr << "-o " << options.stream_output() << ": not written, since the run is not whole\n";
+        else {
+            video->finish();
+            std::cout << options.stream_output() << "\n";
+        }
+    }
     if (!options.watch) return code;
     run.watched->bound = std::move(run.bound);
     return watch(session, std::move(*run.watched), stop);
@@ -226,7 +240,7 @@ ExitCode run(const RunArguments& options) {
     const CaptureReader reader(run.sequence, run.profiles, options.capture.limits);
     if (options.explain) return explain(run.sequence, reader, run.bound->pipeline);
     if (options.stream.print_ffmpeg) {
-        std::cout << ffmpeg_command(reader, run.sequence, run.settings, run.outputs) << "\n";
+        std::cout << "ffmpeg " << ffmpeg_input(reader, run.sequence, run.settings, run.outputs) << " -i -\n";
         return ExitCode::done;
     }
     // A lone frame that cannot be read is reported before a context is made.

@@ -9,6 +9,7 @@
 
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
+#include "cli/video_output.h"
 #include "framework/document/units.h"
 #include "framework/file/frame_stream.h"
 #include "framework/render/draw_with.h"
@@ -54,8 +55,10 @@ NanPolicy nan_policy(const std::string& word) {
 void add_look_options(CLI::App& app, RunArguments& options) {
     app.add_option("look", options.look, "The look: a JSON file of effects in order")->required();
     add_capture_argument(app, options.capture);
-    app.add_option("-o,--output", options.outputs,
-                   "Output file or pattern (.exr, .png), or - for standard output; repeatable")
+    app.add_option(
+           "-o,--output", options.outputs,
+           "Output file or pattern (.exr, .png), a video (.mp4, .mov, .mkv, .webm; needs ffmpeg), or - for "
+           "standard output; repeatable")
         ->required()
         ->allow_extra_args(false);
     app.add_option("--set", options.pipeline.sets,
@@ -176,14 +179,15 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     add_plugin_options(app, options.plugins);
 }
 
-bool RunArguments::streams() const {
-    return std::ranges::find(outputs, kStandardOutput) != outputs.end();
+std::string RunArguments::stream_output() const {
+    const auto found = std::ranges::find_if(outputs, is_stream);
+    return found == outputs.end() ? "" : *found;
 }
 
 std::string RunArguments::needs_every_frame() const {
     return resume.overwrite          ? "--overwrite"
            : resume.no_journal       ? "--no-journal"
-           : streams()               ? "-o -"
+           : streams()               ? "-o " + stream_output()
            : audit                   ? "--audit"
            : !telemetry_plot.empty() ? "--telemetry-plot"
                                      : "";
@@ -211,9 +215,12 @@ LookVariables look_variables(const RunArguments& options, Diagnostics& diagnosti
 
 OutputOptions output_options(const RunArguments& options) {
     OutputOptions outputs;
-    std::ranges::remove_copy(options.outputs, std::back_inserter(outputs.patterns), kStandardOutput);
-    if (options.streams())  // check_stream_options refuses other names
-        outputs.stream_format = find_stream_format(options.stream.format).value_or(StreamFormat::png);
+    std::ranges::remove_copy_if(options.outputs, std::back_inserter(outputs.patterns), is_stream);
+    if (const std::string stream = options.stream_output(); !stream.empty()) {
+        // check_stream_options refuses other names
+        const auto format = find_stream_format(options.stream.format).value_or(StreamFormat::png);
+        outputs.stream_format = video_stream_format(stream).value_or(format);
+    }
     if (!options.roles.empty()) outputs.roles = options.roles;
     if (options.pixel_type == "float") outputs.color_type = PixelType::float32;
     outputs.keep_channels = options.keep_channels;

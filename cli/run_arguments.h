@@ -61,7 +61,9 @@ struct RunArguments {
     StreamArguments stream;
 
     /// Whether frames go to standard output.
-    bool streams() const;
+    bool streams() const { return !stream_output().empty(); }
+    /// Of the outputs, "-" or a video; "" where frames go into files alone.
+    std::string stream_output() const;
     /// The option that makes each run render every frame, current or not; "" for none.
     std::string needs_every_frame() const;
     /// Whether outputs have other pixels than the source.

@@ -141,7 +141,8 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
         reporter.print_summary(report);
         if (session.outputs.stream && !report.failures.empty())
             std::cerr
-                << "-o -: the stream ends before frame " << report.failures.front().frame
+                << "-o " << session.arguments.stream_output() << ": the stream ends before frame "
+                << report.failures.front().frame
                 << ", since a gap would shift the frames behind it; --missing hold repeats a frame where the "
                    "file of the next one is not there\n";
         if (settings.trace) write_text_file(session.arguments.trace, trace.json());

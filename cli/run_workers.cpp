@@ -144,7 +144,7 @@ void clear_after_workers(const RunArguments& arguments, const std::vector<int>& 
 
 void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostics) {
     if (!arguments.jobs.wants_workers()) return;
-    const auto refuse = [&](bool is_given, const char* option, const char* remedy) {
+    const auto refuse = [&](bool is_given, const std::string& option, const char* remedy) {
         if (is_given)
             diagnostics.error({option},
                               "needs all frames in one process, which --jobs, --frame-timeout and "
@@ -156,7 +156,8 @@ void check_worker_options(const RunArguments& arguments, Diagnostics& diagnostic
     refuse(!arguments.trace.empty(), "--trace", "trace a run of a few frames");
     refuse(!arguments.history_in.empty(), "--history-in", "leave --jobs out, or let chunks warm up");
     refuse(!arguments.history_out.empty(), "--history-out", "leave --jobs out, or let chunks warm up");
-    refuse(arguments.streams(), "-o -", "leave --jobs out, or write out_####.png, which ffmpeg reads, too");
+    refuse(arguments.streams(), "-o " + arguments.stream_output(),
+           "leave --jobs out, or write out_####.png, which ffmpeg reads, too");
     refuse(arguments.watch, "--watch", "leave one of them out");
     refuse(arguments.resume.dry_run, "--dry-run", "ask without workers");
 }

@@ -1,4 +1,4 @@
-// `run -o -`: frames into a pipe.
+// `run -o -` and `run -o film.mp4`: frames into a pipe.
 #pragma once
 
 #include <string>
@@ -20,6 +20,9 @@ struct RunArguments;
 /// What -o names for standard output.
 inline constexpr const char* kStandardOutput = "-";
 
+/// Whether -o names that or a video.
+bool is_stream(const std::string& output);
+
 struct StreamArguments {
     std::string format;  ///< one of stream_format_names(); "" where nothing is streamed
     bool print_ffmpeg = false;
@@ -27,12 +30,11 @@ struct StreamArguments {
 
 void add_stream_options(CLI::App& app, StreamArguments& arguments);
 
-/// What cannot go with `-o -`, and options that are for it alone.
+/// What cannot go with `-o -` or a video, and options that are for `-o -` alone.
 void check_stream_options(const RunArguments& arguments, Diagnostics& diagnostics);
 
-/// "ffmpeg -f rawvideo ... -i -": the beginning of the command that reads the frames. "" where nothing is
-/// streamed.
-std::string ffmpeg_command(const CaptureReader& reader, const Sequence& sequence, const RunOptions& run,
-                           const OutputOptions& outputs);
+/// "-f rawvideo ...": how ffmpeg reads the frames from -i -. "" where nothing is streamed.
+std::string ffmpeg_input(const CaptureReader& reader, const Sequence& sequence, const RunOptions& run,
+                         const OutputOptions& outputs);
 
 }  // namespace aftershade::cli

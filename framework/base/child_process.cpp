@@ -11,9 +11,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 
 #include "framework/base/error.h"
+#include "framework/base/text.h"
 
 namespace aftershade {
 
@@ -184,6 +186,14 @@ pid_t spawn_child(const ChildCommand& command) {
                     arguments[0] + ": cannot be run as a worker: " + std::strerror(reason));
     }
     return process;
+}
+
+std::string program_on_path(const std::string& program) {
+    const char* const path = std::getenv("PATH");
+    for (const std::string_view folder : split(path ? path : "/bin:/usr/bin", ':'))
+        if (const std::string file = std::string(folder) + "/" + program; access(file.c_str(), X_OK) == 0)
+            return file;
+    return "";
 }
 
 int reap(pid_t process) {

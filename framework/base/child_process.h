@@ -20,6 +20,7 @@ public:
     Descriptor& operator=(Descriptor&& other) noexcept;
 
     int get() const { return number_; }
+    int release() { return std::exchange(number_, -1); }
     void reset();
 
 private:
@@ -56,6 +57,9 @@ struct ChildCommand {
 /// The child dies with the thread that called this. Throws Error(ErrorKind::effect) where the program cannot
 /// be started, naming it and the system's reason.
 pid_t spawn_child(const ChildCommand& command);
+
+/// The path of a program by the folders of $PATH; "" where none has it.
+std::string program_on_path(const std::string& program);
 
 /// Waits for a child; returns its status as waitpid(2) has it.
 int reap(pid_t process);

@@ -23,12 +23,8 @@ namespace aftershade {
 
 namespace {
 
-std::string name() {
+std::string standard_output() {
     return spelled(Option::output, "-");
-}
-
-Error stream_error(const std::string& what) {
-    return {ErrorKind::output, name() + ": " + what};
 }
 
 template <class Unsigned>
@@ -48,7 +44,7 @@ std::string raw_bytes(const Image& display, int channels) {
     return bytes;
 }
 
-std::string frame_bytes(StreamFormat format, const Image& display) {
+std::string frame_bytes(StreamFormat format, const Image& display, const std::string& name) {
     switch (format) {
         case StreamFormat::rgb24: return raw_bytes<std::uint8_t>(display, 3);
         case StreamFormat::rgba: return raw_bytes<std::uint8_t>(display, 4);
@@ -56,7 +52,7 @@ std::string frame_bytes(StreamFormat format, const Image& display) {
         case StreamFormat::rgba64le: return raw_bytes<std::uint16_t>(display, 4);
         case StreamFormat::png: break;
     }
-    return encode_png(name(), display, {}, {.is_srgb = true});
+    return encode_png(name, display, {}, {.is_srgb = true});
 }
 
 /// "24", "23.98", "30000/1001".
@@ -90,52 +86,52 @@ std::string ffmpeg_input_options(StreamFormat format, int width, int height, dou
 }
 
 FrameStream FrameStream::of_standard_output(StreamFormat format) {
+    const std::string name = standard_output();
     if (isatty(STDOUT_FILENO))
-        throw Error(ErrorKind::usage, name() +
+        throw Error(ErrorKind::usage, name +
                                           ": standard output is a terminal, which cannot show frames; pipe "
                                           "them into a program or a file");
     std::fflush(stdout);
-    const int descriptor = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-    if (descriptor < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
-        throw stream_error(std::string("standard output cannot be used: ") + std::strerror(errno));
+    Descriptor descriptor(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    if (descriptor.get() < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+        throw Error(ErrorKind::output, name + ": standard output cannot be used: " + std::strerror(errno));
+    return into(std::move(descriptor), format, name);
+}
+
+FrameStream FrameStream::into(Descriptor pipe, StreamFormat format, std::string name) {
     std::signal(SIGPIPE, SIG_IGN);
-    return {descriptor, format};
+    return {std::move(pipe), format, std::move(name)};
 }
 
-FrameStream::~FrameStream() {
-    if (descriptor_ >= 0) close(descriptor_);
+Error FrameStream::fault(const std::string& what) const {
+    return {ErrorKind::output, name_ + ": " + what};
 }
-
-FrameStream::FrameStream(FrameStream&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)),
-      format_(other.format_),
-      width_(other.width_),
-      height_(other.height_),
-      frames_(other.frames_) {}
 
 void FrameStream::write(int frame, const Image& display) {
     if (width_ > 0 && (display.width() != width_ || display.height() != height_))
-        throw stream_error(
+        throw fault(
             fmt::format("frame {} has {} x {} px, but the frames before it have {} x {}; "
                         "stream frames of one size, or write files",
                         frame, display.width(), display.height(), width_, height_));
     width_ = display.width();
     height_ = display.height();
-    send(frame_bytes(format_, display));
+    send(frame_bytes(format_, display, name_));
     ++frames_;
 }
 
 void FrameStream::send(std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t sent = ::write(descriptor_, bytes.data(), bytes.size());
+        const ssize_t sent = ::write(descriptor_.get(), bytes.data(), bytes.size());
         if (sent >= 0) bytes.remove_prefix(std::size_t(sent));
         else if (errno == EPIPE)
-            throw stream_error(
+            throw fault(
                 fmt::format("the program that reads the frames has ended, after {} whole {}; "
                             "its own messages have the reason",
                             frames_, frames_ == 1 ? "frame" : "frames"));
         else if (errno != EINTR)
-            throw stream_error(std::string("standard output cannot be written: ") + std::strerror(errno));
+            throw fault(
+                (name_ == standard_output() ? "standard output" : "the program that reads the frames") +
+                std::string(" cannot be written: ") + std::strerror(errno));
     }
 }
 

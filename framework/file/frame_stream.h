@@ -5,8 +5,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "framework/base/child_process.h"
+#include "framework/base/error.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
@@ -30,9 +33,13 @@ public:
     /// Error(ErrorKind::usage) where standard output is a terminal.
     static FrameStream of_standard_output(StreamFormat format);
 
+    /// Takes a pipe into a program; `name`, such as "-o film.mp4", begins the messages. A reader that has
+    /// gone is an error of write() and no signal from now on.
+    static FrameStream into(Descriptor pipe, StreamFormat format, std::string name);
+
     /// Closes the descriptor.
-    ~FrameStream();
-    FrameStream(FrameStream&& other) noexcept;
+    ~FrameStream() = default;
+    FrameStream(FrameStream&&) noexcept = default;
     FrameStream& operator=(FrameStream&&) = delete;
 
     /// The display-referred picture of a frame, 3 or 4 float channels, with 1 for an alpha that is not there;
@@ -41,11 +48,14 @@ public:
     void write(int frame, const Image& display);
 
 private:
-    FrameStream(int descriptor, StreamFormat format) : descriptor_(descriptor), format_(format) {}
+    FrameStream(Descriptor descriptor, StreamFormat format, std::string name)
+        : descriptor_(std::move(descriptor)), format_(format), name_(std::move(name)) {}
     void send(std::string_view bytes);
+    Error fault(const std::string& what) const;
 
-    int descriptor_ = -1;
+    Descriptor descriptor_;
     StreamFormat format_;
+    std::string name_;
     int width_ = 0, height_ = 0;  // of every frame; 0 before the first
     std::size_t frames_ = 0;      // that were written whole
 };

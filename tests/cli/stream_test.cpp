@@ -155,5 +155,87 @@ TEST_F(Stream, TheVideoThatFfmpegMakesHasThePixelsOfThePngs) {
     EXPECT_TRUE(decoded.out == pixels_of_pngs());
 }
 
+/// `-o film.mp4`, with an ffmpeg of the test's own first on PATH.
+class Video : public Stream {
+protected:
+    void write_ffmpeg(const std::string& body) {
+        const fs::path program = folder_ / "bin/ffmpeg";
+        fs::create_directories(program.parent_path());
+        write_text(program, "#!/bin/sh\nfor last; do :; done\nout=${last#file:}\n" + body);
+        fs::permissions(program, fs::perms::owner_all);
+    }
+    CommandResult film(const std::string& output, int code, const std::string& path = "bin:/usr/bin:/bin",
+                       const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"run", "nothing.json", "in_####.exr", "-o", output};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const CommandResult result = run_aftershade(arguments, folder_.path(), {{"PATH", path}});
+        EXPECT_EQ(result.exit_code, code) << result.err;
+        return result;
+    }
+    std::string decoded(const std::string& file) const {
+        return Command({"/usr/bin/ffmpeg", "-loglevel", "error", "-i", file, "-f", "rawvideo", "-pix_fmt",
+                        "rgb48le", "-"},
+                       folder_.path())
+            .wait()
+            .out;
+    }
+};
+
+TEST_F(Video, GoesThroughFfmpegAndAppearsOnceItIsWhole) {
+    write_ffmpeg("cat > \"$out\"; echo \"$@\" > words");
+    EXPECT_EQ(film("my film.mp4", 0).out, "my film.mp4\n");
+    const std::string raw = run({"nothing.json", "in_####.exr", "-o", "-", "--format", "rgb24"}, 0).out;
+    EXPECT_EQ(read_text(folder_ / "my film.mp4"), raw);
+    EXPECT_NE(read_text(folder_ / "words").find("-video_size 64x36 -framerate 24 -i - "), std::string::npos)
+        << read_text(folder_ / "words");
+}
+
+TEST_F(Video, IsLeftAsItWasWhereFfmpegOrTheRunFails) {
+    write_text(folder_ / "film.mov", "before");
+    write_ffmpeg("cat > \"$out\"; exit 3");
+    EXPECT_NE(
+        film("film.mov", int(ExitCode::output)).err.find("-o film.mov: ffmpeg made no video (exit code 3)"),
+        std::string::npos);
+    write_ffmpeg("head -c 5000 > \"$out\"");
+    EXPECT_NE(film("film.mov", int(ExitCode::output)).err.find("-o film.mov: "), std::string::npos);
+    write_ffmpeg("cat > \"$out\"");
+    fs::resize_file(frame_path(3), fs::file_size(frame_path(3)) / 2);
+    EXPECT_NE(film("film.mov", int(ExitCode::partial)).err.find("-o film.mov: not written"),
+              std::string::npos);
+    EXPECT_EQ(read_text(folder_ / "film.mov"), "before");
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+        EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
+}
+
+TEST_F(Video, SaysWhatItNeedsAndWhatDoesNotGoWithIt) {
+    EXPECT_NE(film("film.mp4", int(ExitCode::output), "/nowhere").err.find("needs ffmpeg on PATH"),
+              std::string::npos);
+    const std::string faults = film("film.mp4", int(ExitCode::usage), "/nowhere",
+                                    {"-o", "other.webm", "--jobs", "2", "--resume", "--format", "rgb24"})
+                                   .err;
+    for (const char* fault : {"a run makes one video", "-o film.mp4: error: needs all frames in one process",
+                              "--resume: error: does not go with -o film.mp4", "--format: error: "})
+        EXPECT_NE(faults.find(fault), std::string::npos) << fault << "\n" << faults;
+}
+
+TEST_F(Video, IsReadByFfmpegInEveryKind) {
+    if (!fs::exists("/usr/bin/ffmpeg")) GTEST_SKIP() << "no ffmpeg (Debian package ffmpeg)";
+    const std::string raw = run({"nothing.json", "in_####.exr", "-o", "-", "--format", "rgb48le"}, 0).out;
+    for (const auto& [name, most] : std::vector<std::pair<std::string, double>>{
+             {"film.mkv", 0}, {"film.mov", 0.03}, {"film.mp4", 0.03}, {"film.webm", 0.05}}) {
+        film(name, 0);
+        const std::string read = decoded(name);
+        ASSERT_EQ(read.size(), raw.size()) << name;
+        double sum = 0;
+        for (std::size_t i = 0; i < raw.size(); i += 2) {
+            std::uint16_t a = 0, b = 0;
+            std::memcpy(&a, raw.data() + i, 2);
+            std::memcpy(&b, read.data() + i, 2);
+            sum += std::abs(double(a) - double(b)) / 65535;
+        }
+        EXPECT_LE(sum / (double(raw.size()) / 2), most) << name;
+    }
+}
+
 }  // namespace
 }  // namespace aftershade::test

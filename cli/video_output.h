@@ -1,0 +1,39 @@
+// `run -o film.mp4`: frames into ffmpeg, which makes a video of them.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+
+#include "framework/base/atomic_file.h"
+#include "framework/file/frame_stream.h"
+
+namespace aftershade::cli {
+
+/// How frames go into a video, by its name: .mp4 (H.264, 8 bits), .mov (ProRes 422 HQ, 10 bits), .mkv (FFV1,
+/// 16 bits, lossless), .webm (VP9, 8 bits). nullopt where the name is of no video.
+std::optional<StreamFormat> video_stream_format(const std::string& name);
+
+/// One video. Its file appears whole, at finish(), or not at all. [one thread at a time]
+class VideoEncoder {
+public:
+    /// `input`: ffmpeg_input_options(). Throws Error(ErrorKind::output) where ffmpeg is not on PATH.
+    VideoEncoder(const std::string& file, const std::string& input);
+    /// Ends ffmpeg where finish() has not.
+    ~VideoEncoder();
+    VideoEncoder(const VideoEncoder&) = delete;
+    VideoEncoder& operator=(const VideoEncoder&) = delete;
+
+    FrameStream& frames() { return *frames_; }
+    /// Waits for ffmpeg. Throws Error(ErrorKind::output) where it failed; its own messages have the reason.
+    void finish();
+
+private:
+    std::string name_;
+    AtomicFile file_;
+    std::optional<FrameStream> frames_;
+    pid_t process_ = -1;
+};
+
+}  // namespace aftershade::cli
