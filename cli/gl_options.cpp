@@ -60,14 +60,9 @@ gpu::GlChoice chosen_gl(const GlOptions& options, std::optional<int> part) {
             "--device all: spreads the workers of --jobs, the chunks of --chunk and the cases of golden "
             "over every GPU; add one of them, or name one device");
     }
-    const std::vector<gpu::Device> devices = gpu::list_devices();
-    if (is_all) return {backend, gpu::device_of_part(devices, backend, *part)};
-    // Why EGL lists none is for the context to say.
-    if (!devices.empty()) try {
-            gpu::devices_named(devices, name.value);
-        } catch (const Error& error) {
-            throw Error(ErrorKind::usage, name.source + ": " + error.what());
-        }
+    if (is_all) return {backend, gpu::device_of_part(gpu::list_devices(), backend, *part)};
+    if (const std::string fault = gpu::device_fault(name.value); !fault.empty())
+        throw Error(ErrorKind::usage, name.source + ": " + fault);
     return {backend, name.value};
 }
 

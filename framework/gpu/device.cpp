@@ -194,6 +194,16 @@ std::vector<Device> devices_named(const std::vector<Device>& devices, std::strin
                 subject + ": " + hidden_text(found) + "; name another one, or change the variable");
 }
 
+std::string device_fault(std::string_view name) {
+    const std::vector<Device> devices = names_one_device(name) ? list_devices() : std::vector<Device>();
+    try {
+        if (!devices.empty()) devices_named(devices, name);
+        return "";
+    } catch (const Error& error) {
+        return error.what();
+    }
+}
+
 std::string device_of_part(const std::vector<Device>& devices, Backend backend, int part) {
     if (backend != Backend::automatic && backend != Backend::egl) return "";
     std::vector<Device> cards = devices_named(devices, "all");

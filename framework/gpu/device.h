@@ -55,6 +55,10 @@ bool names_one_device(std::string_view name);
 /// others where CUDA_VISIBLE_DEVICES orders them. Throws Error(ErrorKind::usage), listing what there is.
 std::vector<Device> devices_named(const std::vector<Device>& devices, std::string_view name);
 
+/// What devices_named() says of a name that no device of this machine has; "" where one has it, and where EGL
+/// lists none, which a context explains.
+std::string device_fault(std::string_view name);
+
 /// The index of the GPU for worker or chunk `part`, counted from 0, so that parts go evenly to all GPUs. ""
 /// where EGL lists none, or the backend draws in software.
 std::string device_of_part(const std::vector<Device>& devices, Backend backend, int part);

@@ -8,6 +8,7 @@
 
 #include "framework/base/error.h"
 #include "framework/effect/program_store.h"
+#include "framework/gpu/device.h"
 #include "framework/host/host_data.h"
 #include "framework/host/image_data.h"
 #include "framework/host/rendering.h"
@@ -90,6 +91,10 @@ EffectRegistry Host::Data::registry() const {
 
 gpu::Context& Host::Data::context() {
     if (!context_) {
+        Diagnostics faults;
+        if (const std::string fault = gpu::device_fault(options.device); !fault.empty())
+            faults.error({"HostOptions::device"}, fault);
+        stop_at_errors(ErrorKind::usage, faults);
         if (options.share)
             context_ = std::make_unique<gpu::Context>(
                 gpu::SharedEglContext{options.share->display, options.share->context});
