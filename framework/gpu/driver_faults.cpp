@@ -286,11 +286,14 @@ void add_dri_faults(const Vendor& mesa, Texts& faults) {
 std::string loader_remedy(std::string_view message) {
     const std::string_view file = message.substr(0, message.find(": "));
     const std::string folder = fs::path(file).parent_path().string();
-    if (contains(message, ": version `") && contains(message, "' not found"))
-        return fmt::format(
-            "; an older {} is loaded first: leave {} out of LD_LIBRARY_PATH and LD_PRELOAD, or start "
-            "outside the environment that it is of",
-            fs::path(file).filename().string(), folder);
+    if (contains(message, ": version `") && contains(message, "' not found")) {
+        const bool is_systems = folder.starts_with("/lib") || folder.starts_with("/usr/lib");
+        return is_systems ? fmt::format("; {} is older than the driver needs: update its package", file)
+                          : fmt::format(
+                                "; an older {} is loaded first: leave {} out of LD_LIBRARY_PATH and "
+                                "LD_PRELOAD, or start outside the environment that it is of",
+                                fs::path(file).filename().string(), folder);
+    }
     if (contains(message, kNoFile) && fs::path(file).filename().string().starts_with("libnvidia-"))
         return fmt::format("; {} comes with NVIDIA's driver: install all its libraries of one version, or {}",
                            file, kAskGraphics);

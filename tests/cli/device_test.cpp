@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::string kSoftware = "software,,,,;";
+
 class SimulatedCards : public BatchWork {
 protected:
     void SetUp() override {
@@ -115,7 +117,8 @@ TEST_F(SimulatedCards, ANameThatNoCardHasEndsTheCommandAndSaysWhereItCameFrom) {
     environment_["AFTERSHADE_DEVICE"] = "card7";
     EXPECT_EQ(render({}, 2).err.find("aftershade: error: AFTERSHADE_DEVICE: device 'card7' is not there"),
               0U);
-    render({"--backend", "osmesa"});  // the variable is of cards
+    environment_["EGL_DOUBLE_DEVICES"] += kSoftware;
+    render({"--backend", "egl-software"});  // the variable is of cards
     environment_.erase("AFTERSHADE_DEVICE");
     EXPECT_EQ(render({"--device", "all"}, 2).err.find("aftershade: error: --device all: spreads the workers"),
               0U);
@@ -170,10 +173,10 @@ TEST_F(SimulatedCards, CudaVisibleDevicesChoosesAndHidesCards) {
               std::string::npos);
 }
 
-/// As many contexts as there are cards fail first.
 TEST_F(SimulatedCards, AFallBackToSoftwareIsSaidByWorkersAndEveryVerb) {
     write_frames(1, 2);
     give_cards(1, "broken");
+    environment_["EGL_DOUBLE_DEVICES"] += kSoftware;
     const std::string why = "egl: /dev/dri/card0: eglInitialize failed (";
     for (const char* jobs : {"1", "2"}) {
         const std::string said = render({"--jobs", jobs}).err;

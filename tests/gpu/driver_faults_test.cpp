@@ -92,6 +92,25 @@ TEST_F(BrokenSetup, AnOldLibraryThatIsLoadedFirstIsNamed) {
     }
 }
 
+/// Messages of glibc 2.36, the first as a program in an environment of conda had it.
+TEST(LoaderRemedy, FitsWhatTheLoaderSays) {
+    EXPECT_EQ(loader_remedy("/opt/conda/lib/libstdc++.so.6: version `GLIBCXX_3.4.30' not found (required by "
+                            "/lib/x86_64-linux-gnu/libLLVM-15.so.1)"),
+              "; an older libstdc++.so.6 is loaded first: leave /opt/conda/lib out of LD_LIBRARY_PATH and "
+              "LD_PRELOAD, or start outside the environment that it is of");
+    EXPECT_EQ(loader_remedy("/lib/x86_64-linux-gnu/libc.so.6: version `GLIBC_2.38' not found (required by "
+                            "/usr/lib/x86_64-linux-gnu/libEGL_mesa.so.0)"),
+              "; /lib/x86_64-linux-gnu/libc.so.6 is older than the driver needs: update its package");
+    EXPECT_EQ(loader_remedy("libLLVM-15.so.1: cannot open shared object file: No such file or directory"),
+              "; install the package that has libLLVM-15.so.1 (apt-file search libLLVM-15.so.1)");
+    EXPECT_EQ(loader_remedy("libEGL_mesa.so.0: wrong ELF class: ELFCLASS32"),
+              "; it is for another kind of processor");
+    EXPECT_EQ(loader_remedy("libEGL_mesa.so.0: undefined symbol: _glapi_tls_Dispatch"),
+              "; libraries of different versions are mixed: install its package again");
+    EXPECT_EQ(loader_remedy("libEGL_mesa.so.0: cannot enable executable stack as shared object requires"),
+              "");
+}
+
 TEST_F(BrokenSetup, NvidiasLibraryThatIsAbsentAsksForTheKernelsVersion) {
     const std::string path = vendor("10_nvidia.json", "libEGL_nvidia_of_no_machine.so.0");
     nvidia();
