@@ -97,6 +97,9 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
             fmt::print("{:<13} {:<7} {:<45} {}\n", name, "yes", report.info.renderer, report.info.version);
         else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
     }
+    if (const std::string& fault = gpu::prepare_driver_cache(); !fault.empty())
+        fmt::print("shader cache  off: {}\n", printable(fault));
+    fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
     for (const gpu::BackendReport& report : reports)
         if (report.usable)
             fmt::print("draws with    {} on {}{}\n", draws_with(report), gpu::backend_name(report.backend),
@@ -105,9 +108,6 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
         fmt::print("device        {}{}{}\n", device.text(),
                    device.renderer.empty() ? "" : ": " + device.renderer,
                    device.is_hidden ? ", hidden by CUDA_VISIBLE_DEVICES" : "");
-    if (const std::string& fault = gpu::prepare_driver_cache(); !fault.empty())
-        fmt::print("shader cache  off: {}\n", printable(fault));
-    fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
     try {
         print_confinement(confinement_of_plugins());
     } catch (const Error& error) {
