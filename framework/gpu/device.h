@@ -36,7 +36,7 @@ struct Device {
 /// Every device of EGL; none where there is no EGL. Makes no context. [any thread]
 std::vector<Device> list_devices();
 
-/// Whether the files below `root` have a GPU's device file: without one, nobody expects to draw on hardware.
+/// Whether the files below `root` have a GPU's device file, so that drawing on hardware is expected.
 bool has_gpu_file(const std::filesystem::path& root);
 
 /// Adds what /sys and /proc below `root` have: the address on PCI, NVIDIA's UUID. Where CUDA_VISIBLE_DEVICES
@@ -44,7 +44,7 @@ bool has_gpu_file(const std::filesystem::path& root);
 /// list are hidden.
 void complete_devices(std::vector<Device>& devices, const std::filesystem::path& root);
 
-/// "6bcd0a81-...", with "GPU-" before it for NVIDIA's; "" for zeros, which mean that there is none.
+/// "6bcd0a81-...", with "GPU-" before it for NVIDIA's; "" for zeros, which mean none.
 std::string uuid_text(const std::array<unsigned char, 16>& bytes, bool is_nvidia);
 
 /// Whether `name` names one device: it is neither empty nor "all".

@@ -13,7 +13,7 @@ namespace aftershade::gpu {
 std::string loader_remedy(std::string_view message);
 
 /// Why EGL may list no GPU, a clause for each cause, by the files below `root`. Loads the libraries that
-/// vendor files name. Empty where nothing is wrong but that there is no GPU. [any thread]
+/// vendor files name. Empty where only the GPU is missing. [any thread]
 std::vector<std::string> hardware_faults(const std::filesystem::path& root);
 /// Likewise of Mesa's software device.
 std::vector<std::string> software_faults(const std::filesystem::path& root);

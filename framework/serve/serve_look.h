@@ -24,7 +24,7 @@ struct ServeOptions {
     std::vector<Profile> profiles;
     ReadLimits limits{};
     gpu::GlChoice gl{};
-    std::function<void(const gpu::ContextInfo&)> drawn_by;  ///< told once, in the process that draws
+    std::function<void(const gpu::ContextInfo&)> drawn_by;  ///< called once, in the process that draws
     std::filesystem::path data_folder;
     std::vector<std::filesystem::path> effect_folders;  ///< searched before the shipped one
     int port = 0;                                       ///< 0: a free one
