@@ -65,10 +65,11 @@ std::string report_json(const BatchSummary& summary) {
                                      {"skipped", count_outcome(summary.frames, "skipped")},
                                      {"not_run", count_outcome(summary.frames, "not run")},
                                      {"frames", std::move(frames)}};
-    if (!summary.renderer.empty()) {
-        report["renderer"] = summary.renderer;
-        report["hardware_not_usable"] = !summary.hardware_fault.empty();
-        if (!summary.hardware_fault.empty()) report["hardware_fault"] = summary.hardware_fault;
+    if (const DrawnBy& gl = summary.gl; !gl.renderer.empty()) {
+        report["renderer"] = gl.renderer;
+        if (!gl.device.empty()) report["device"] = gl.device;
+        report["hardware_not_usable"] = !gl.hardware_fault.empty();
+        if (!gl.hardware_fault.empty()) report["hardware_fault"] = gl.hardware_fault;
     }
     if (!summary.error.empty()) report["error"] = summary.error;
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

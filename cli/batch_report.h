@@ -16,9 +16,8 @@ struct BatchSummary {
     std::vector<FrameEvent> frames;
     double seconds = 0;
     ExitCode exit_code = ExitCode::done;
-    std::string renderer{};  ///< "egl-software: llvmpipe (...), 4.5 ..."; "" where nothing was drawn here
-    std::string hardware_fault{};  ///< why backend auto took software; "" where it did not
-    std::string error{};           ///< the message of what ended the run; "" where nothing did
+    DrawnBy gl{};         ///< empty where nothing was drawn
+    std::string error{};  ///< the message of what ended the run; "" where nothing did
 };
 
 /// The outcomes of a run in this process; frames without one are "not run" unless they are current.

@@ -33,7 +33,7 @@ struct CheckOptions {
     std::string subject;
     std::vector<std::string> effect_paths;
     PluginOptions plugins;
-    std::string backend;
+    GlOptions gl;
     bool no_gl = false;
     bool strict = false;
     std::string warmup;
@@ -54,7 +54,8 @@ void check_one_effect(const EffectManifest& manifest, const CheckOptions& option
     check_declared_used(manifest, data / "glsl", diagnostics);
     lint_effect(manifest, data / "glsl", diagnostics);
     if (options.no_gl) return;
-    gpu::Context context(chosen_backend(options.backend));
+    gpu::Context context(chosen_gl(options.gl));
+    warn_of_software(context.info());
     StatusWriter status;
     NativeRegistry natives = native_registry(options.plugins, &status);
     check_effect(context, manifest, data, {&natives, &status}, diagnostics);
@@ -77,7 +78,7 @@ ExitCode check_effect_apart(const EffectManifest* manifest, const CheckOptions& 
 
 ExitCode check(const CheckOptions& options) {
     Diagnostics words, diagnostics;
-    chosen_backend(options.backend);
+    chosen_gl(options.gl);
     std::vector<std::string> paths = options.effect_paths;
     const fs::path subject = options.subject;
     std::error_code failure;
@@ -106,8 +107,8 @@ ExitCode check(const CheckOptions& options) {
     }
     stop_at_words();
     if (!options.warmup.empty())
-        return check_warmup({options.subject, options.warmup, options.effect_paths, options.plugins,
-                             chosen_backend(options.backend)});
+        return check_warmup(
+            {options.subject, options.warmup, options.effect_paths, options.plugins, chosen_gl(options.gl)});
     if (const auto look = read_look(subject, diagnostics)) bind_pipeline(*look, effects, {}, diagnostics);
     return verdict(diagnostics, options);
 }
@@ -125,7 +126,7 @@ Verb add_check(CLI::App& app) {
     app.add_flag("--strict", options->strict, "Treat warnings as faults");
     add_effect_path_option(app, options->effect_paths);
     add_plugin_options(app, options->plugins);
-    add_backend_option(app, options->backend);
+    add_gl_options(app, options->gl);
     return [options] { return check(*options); };
 }
 

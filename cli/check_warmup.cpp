@@ -58,7 +58,8 @@ ExitCode check_warmup(const WarmupCheck& check) {
     }
     if (const auto code = run_in_worker(check.plugins, pipeline.has_foreign())) return *code;
     const CaptureReader reader(*sequence, std::move(profiles), options.limits);
-    gpu::Context context(check.backend);
+    gpu::Context context(check.gl);
+    warn_of_software(context.info());
     StatusWriter status;
     NativeRegistry natives = native_registry(check.plugins, &status);
     RunOptions run;

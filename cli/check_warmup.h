@@ -16,7 +16,7 @@ struct WarmupCheck {
     std::string capture;
     std::vector<std::string> effect_paths;
     PluginOptions plugins;
-    gpu::Backend backend;
+    gpu::GlChoice gl;
 };
 
 /// Prints what a chunk's first frame differs by after more and more warm-up, and what the look declares. Exit

@@ -21,6 +21,7 @@
 #include "framework/effect/native/native_process.h"
 #include "framework/effect/native/thread_limit.h"
 #include "framework/gpu/context.h"
+#include "framework/gpu/device.h"
 #include "framework/gpu/driver_cache.h"
 #include "framework/render/draw_with.h"
 
@@ -103,6 +104,10 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
         if (report.usable)
             fmt::print("draws with    {} on {}{}\n", draws_with(report), gpu::backend_name(report.backend),
                        report.info.software ? " (a software renderer gains nothing by compute)" : "");
+    for (const gpu::Device& device : gpu::list_devices())
+        fmt::print("device        {}{}{}\n", device.text(),
+                   device.renderer.empty() ? "" : ": " + device.renderer,
+                   device.is_hidden ? ", hidden by CUDA_VISIBLE_DEVICES" : "");
     try {
         print_confinement(confinement_of_plugins());
     } catch (const Error& error) {
@@ -134,6 +139,14 @@ void print_json(const std::vector<gpu::BackendReport>& reports) {
             row["reason"] = report.reason;
         }
         document["backends"].push_back(std::move(row));
+    }
+    document["devices"] = nlohmann::ordered_json::array();
+    for (const gpu::Device& device : gpu::list_devices()) {
+        nlohmann::ordered_json row{{"index", device.index}, {"names", device.names()}};
+        if (!device.renderer.empty()) row["renderer"] = device.renderer;
+        row["software"] = device.is_software;
+        row["hidden"] = device.is_hidden;
+        document["devices"].push_back(std::move(row));
     }
     fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }

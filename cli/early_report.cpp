@@ -41,7 +41,7 @@ void write_early_report(const RunArguments& options, ExitCode code, const std::s
     if (!begins_frames(options) || std::filesystem::exists(options.jobs.report, failure)) return;
     try {
         write_text_file(options.jobs.report,
-                        report_json({options.look, options.capture.capture, {}, 0, code, "", "", message}));
+                        report_json({options.look, options.capture.capture, {}, 0, code, {}, message}));
     } catch (const Error& error) {
         if (code == ExitCode::done) throw;
         std::cerr << printable_lines(error.what()) << "\n";

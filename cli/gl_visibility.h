@@ -14,7 +14,8 @@ namespace aftershade::cli {
 /// Traces ids and resolves their light with GL, and has its caches count them too. [the thread that made it]
 class GlVisibility {
 public:
-    explicit GlVisibility(gpu::Backend backend) : context_(backend), passes_(context_) {}
+    explicit GlVisibility(const gpu::GlChoice& gl) : context_(gl), passes_(context_) {}
+    const gpu::ContextInfo& info() const { return context_.info(); }
     /// This must outlive them.
     scene::VisibilityPasses passes();
     /// The renderer, the time of each pass over all frames and, for each frame, what its caches counted.

@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <thread>
 
 #include "cli/compare_options.h"
@@ -35,12 +37,14 @@ std::string line_of_git(const fs::path& folder, const std::vector<std::string>& 
     }
 }
 
-gpu::Backend backend_of(const GoldenOptions& options) {
+/// Of the `part`-th case.
+gpu::GlChoice gl_of(const GoldenOptions& options, int part) {
+    GlOptions gl = options.gl;
     const char* environment = std::getenv("AFTERSHADE_BACKEND");
     // Goldens are made on software GL unless someone says otherwise, not on the GPU that is at hand.
-    if (options.backend.empty() && !(environment && *environment)) return gpu::Backend::software;
+    if (gl.backend.empty() && !(environment && *environment)) gl.backend = "software";
     try {
-        return chosen_backend(options.backend);
+        return chosen_gl(gl, part);
     } catch (const Error& error) {
         throw CodedError(kCompareUsage, error.what());
     }
@@ -82,7 +86,7 @@ void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
     app.add_option("--plugin-path", options.plugin_paths,
                    "Search this folder for native plug-ins; repeatable")
         ->allow_extra_args(false);
-    app.add_option("--backend", options.backend, backend_help("software"));
+    add_gl_options(app, options.gl, "software");
 }
 
 GoldenSetup prepare_golden(const GoldenOptions& options) {
@@ -92,7 +96,7 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     check_words(options, suite.value_or(GoldenSuite{}), diagnostics);
     if (!suite || diagnostics.has_errors()) throw CodedError(kCompareUsage, diagnostics);
     setup.suite = std::move(*suite);
-    const gpu::Backend backend = backend_of(options);
+    const gpu::GlChoice gl = gl_of(options, 0);
 
     GoldenRunOptions& run = setup.context.options;
     const int cores = std::max(1, int(std::thread::hardware_concurrency()));
@@ -107,15 +111,21 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     run.render.effect_paths = options.effect_paths;
     for (const fs::path& path : setup.suite.effect_paths) run.render.effect_paths.push_back(path.string());
     {
-        const gpu::Context context(backend);
+        const gpu::Context context(gl);
+        warn_of_software(context.info());
         run.environment = environment_of(context.info());
         run.render.backend = gpu::backend_name(context.info().backend);
+        run.render.device = [options, part = std::make_shared<std::atomic<int>>(0)] {
+            return gl_of(options, (*part)++).device;
+        };
     }
 
     std::vector<std::string> same;
     for (const std::string& path : options.effect_paths) same.insert(same.end(), {"--effect-path", path});
     for (const std::string& path : options.plugin_paths) same.insert(same.end(), {"--plugin-path", path});
-    if (!options.backend.empty()) same.insert(same.end(), {"--backend", options.backend});
+    for (const auto& [name, value] :
+         {std::pair{"--backend", options.gl.backend}, {"--device", options.gl.device}})
+        if (!value.empty()) same.insert(same.end(), {name, value});
     setup.context.with_options = same.empty() ? "" : " " + printed_command(same);
     setup.context.commit = line_of_git(setup.suite.folder(), {"rev-parse", "HEAD"});
     return setup;

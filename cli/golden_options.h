@@ -16,7 +16,7 @@ namespace aftershade::cli {
 struct GoldenOptions {
     std::string suite;
     std::vector<std::string> filters, effect_paths, plugin_paths;
-    std::string backend;
+    GlOptions gl;
     int jobs = 0;  ///< 0: as many as there are cores
     double timeout_s = 600;
     // run

@@ -76,6 +76,8 @@ std::string add_report(const TaskReport& file, BatchSummary& batch, std::map<int
         for (const auto& [frame, event] : added) owners[frame] = file;
         batch.look = report.value("look", batch.look);
         batch.capture = report.value("capture", batch.capture);
+        if (batch.gl.hardware_fault.empty())
+            batch.gl = {report.value("renderer", batch.gl.renderer), "", report.value("hardware_fault", "")};
         batch.seconds += report.at("seconds").get<double>();
         end = end_of_run(report);
         for (auto& [frame, event] : added) frames[frame] = std::move(event);

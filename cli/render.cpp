@@ -233,7 +233,8 @@ ExitCode render(RenderArguments options) {
     if (diagnostics.has_errors()) return ExitCode::usage;
     std::optional<GlVisibility> gl;
     if (options.job.visibility && options.visibility.device == "gl") {
-        gl.emplace(chosen_backend(options.visibility.backend));
+        gl.emplace(chosen_gl(options.visibility.gl));
+        warn_of_software(gl->info());
         options.job.visibility_passes = gl->passes();
     }
     const scene::JobReport report = scene::run_job(*scene, *profile, options.job, stop, [&](int frame) {

@@ -100,6 +100,18 @@ FrameShare share_of_frames(const RunArguments& options, const Pipeline& pipeline
     return share;
 }
 
+/// Which device of --device all this process draws on.
+std::optional<int> part_of(const RunArguments& options) {
+    if (options.jobs.wants_workers()) return 0;  // each worker has its own
+    Diagnostics faults;
+    const auto chunk =
+        options.jobs.chunk.empty()
+            ? std::nullopt
+            : parse_chunk(
+                  options.jobs.chunk, [](const char* name) { return std::getenv(name); }, faults);
+    return chunk ? std::optional(chunk->index) : std::nullopt;
+}
+
 /// What the user wrote, without a fault.
 struct CheckedRun {
     std::optional<WatchedLook> watched;
@@ -192,7 +204,8 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     NativeRegistry natives = native_registry(options.plugins, &status);
     std::optional<gpu::Context> made;
     const auto context = [&]() -> gpu::Context& {
-        return made ? *made : made.emplace(chosen_backend(options.backend), gpu::SelfTest::at_first_use);
+        return made ? *made
+                    : made.emplace(chosen_gl(options.gl, part_of(options)), gpu::SelfTest::at_first_use);
     };
     run.settings.natives = {&natives, &status};
     const Pipeline& pipeline = run.bound->pipeline;
@@ -231,7 +244,7 @@ std::jthread load_library_ahead(gpu::Backend backend) {
 
 ExitCode run(const RunArguments& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
-    const gpu::Backend backend = chosen_backend(options.backend);
+    const gpu::Backend backend = chosen_gl(options.gl, part_of(options)).backend;
     const bool draws = !options.explain && !options.stream.print_ffmpeg && !options.jobs.wants_workers();
     const std::jthread library = draws ? load_library_ahead(backend) : std::jthread();
     const ProgressStyle progress = parse_progress(options.progress);

@@ -165,7 +165,7 @@ void add_run_options(CLI::App& app, RunArguments& options) {
     begin_group("Diagnosis");
     add_diagnosis_options(app, options);
     begin_group("Machine, and code that is not shipped");
-    add_backend_option(app, options.backend);
+    add_gl_options(app, options.gl);
     app.add_option("--draw-with", options.draw_with,
                    "Draw with fragment shaders, or with compute shaders where they can give the same "
                    "picture, which data-centre GPUs run faster; auto: what is faster on this GPU "

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/capture_options.h"
+#include "cli/gl_options.h"
 #include "cli/job_options.h"
 #include "cli/plugin_options.h"
 #include "cli/resume.h"
@@ -29,7 +30,7 @@ struct RunArguments {
     std::vector<std::string> roles;
     std::vector<std::string> effect_paths;
     std::string pixel_type = "half";
-    std::string backend;
+    GlOptions gl;
     std::string draw_with;
     int read_ahead = 0;
     std::string progress = "auto";

@@ -78,6 +78,18 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
     std::fflush(stdout);
 }
 
+std::string fallback_text(const std::string& hardware_fault) {
+    return hardware_fault.empty()
+               ? ""
+               : "; backend auto found no usable hardware GL (" + printable(hardware_fault) + ")";
+}
+
+std::string software_warning(const std::string& hardware_fault) {
+    return "this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
+           "software: " +
+           hardware_fault + " (--backend egl refuses such a run)";
+}
+
 std::string warning_line(ProgressStyle style, const std::string& message) {
     const std::string text = "aftershade: warning: " + printable(message);
     if (style != ProgressStyle::json) return text;
@@ -272,9 +284,7 @@ void RunReporter::print_summary(const RunReport& report) {
     if (!report.gl.renderer.empty())
         fmt::print(stderr, ", {}: {}, {}", gpu::backend_name(report.gl.backend), report.gl.renderer,
                    report.gl.version);
-    const std::string& fault = report.gl.hardware_fault;
-    fmt::print(stderr, "{}\n",
-               fault.empty() ? "" : "; backend auto found no usable hardware GL (" + printable(fault) + ")");
+    fmt::print(stderr, "{}\n", fallback_text(report.gl.hardware_fault));
 }
 
 }  // namespace aftershade::cli

@@ -30,6 +30,11 @@ void print_openjd_progress(std::size_t done, std::size_t count, const std::strin
 /// "aftershade: warning: ..." or {"event": "warning", "message": ...}
 std::string warning_line(ProgressStyle style, const std::string& message);
 
+/// "; backend auto found no usable hardware GL (...)"; "" without a fault.
+std::string fallback_text(const std::string& hardware_fault);
+/// What a machine with a GPU warns of then.
+std::string software_warning(const std::string& hardware_fault);
+
 /// A line of stdout, at once. Throws Error(ErrorKind::output).
 void print_path(std::string_view path);
 

@@ -19,6 +19,7 @@
 #include "framework/base/error.h"
 #include "framework/base/memory_limit.h"
 #include "framework/base/text.h"
+#include "framework/gpu/device.h"
 #include "framework/gpu/timer.h"
 #include "framework/render/trace.h"
 
@@ -35,16 +36,9 @@ void write_extras(const RunArguments& arguments, const RunReport& report) {
             telemetry_plot(report.telemetry, std::filesystem::path(arguments.look).filename().string()));
 }
 
-std::string renderer_text(const gpu::ContextInfo& gl) {
-    return std::string(gpu::backend_name(gl.backend)) + ": " + gl.renderer + ", " + gl.version;
-}
-
-/// The device files of GPUs: a machine without them is not expected to draw on hardware.
-bool has_gpu_device() {
-    std::error_code failure;
-    for (const char* path : {"/dev/nvidia0", "/dev/nvidiactl", "/dev/dri/renderD128", "/dev/dxg", "/dev/kfd"})
-        if (std::filesystem::exists(path, failure)) return true;
-    return false;
+DrawnBy drawn_by(const gpu::ContextInfo& gl) {
+    return {std::string(gpu::backend_name(gl.backend)) + ": " + gl.renderer + ", " + gl.version, gl.device,
+            gl.hardware_fault};
 }
 
 /// What --report has of a run in this process, also of one that an error ends.
@@ -84,8 +78,7 @@ public:
     RunReport run(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop) {
         RunReport report = run_frames(setup, watched(observer), stop);
         report.frames_current = int(current_.size());
-        if (!report.gl.renderer.empty()) renderer_ = renderer_text(report.gl);
-        hardware_fault_ = report.gl.hardware_fault;
+        if (!report.gl.renderer.empty()) session_.status.write(gl_ = drawn_by(report.gl));
         return report;
     }
 
@@ -98,7 +91,7 @@ private:
             write_text_file(session_.arguments.jobs.report,
                             report_json({session_.arguments.look, session_.arguments.capture.capture,
                                          frame_events(session_.run, outcomes_, current_), taken.count(),
-                                         code_, renderer_, hardware_fault_, error_}));
+                                         code_, gl_, error_}));
         } catch (const Error& error) {
             if (code_ == ExitCode::done) throw;
             std::cerr << printable_lines(error.what()) << "\n";
@@ -109,8 +102,7 @@ private:
     const std::vector<int>& current_;
     std::vector<FrameOutcome> outcomes_;
     ExitCode code_ = ExitCode::effect;
-    std::string renderer_;
-    std::string hardware_fault_;
+    DrawnBy gl_;
     std::string error_;  // its message
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -130,11 +122,10 @@ ExitCode render(const RunSession& session, const RunOptions& run, const Pipeline
             report_file.run({session.context, pipeline, session.sequence, session.reader, settings,
                              session.outputs, data_path(), hooks, session.end_context},
                             reporter.observer(), stop);
-        if (!report.gl.hardware_fault.empty() && has_gpu_device())
-            reporter.warn(
-                "this machine has a GPU, but no hardware GL could be used, so the frames were drawn in "
-                "software: " +
-                report.gl.hardware_fault + " (--backend egl refuses such a run)");
+        // Of workers, the process that started them says it once.
+        if (!report.gl.hardware_fault.empty() && !session.arguments.jobs.is_worker() &&
+            gpu::has_gpu_file("/"))
+            reporter.warn(software_warning(report.gl.hardware_fault));
         // Of several workers each sees only a part of the frames.
         if (!session.arguments.jobs.is_worker())
             for (const std::string& warning : report.objects_unmatched) reporter.warn(warning);

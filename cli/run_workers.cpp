@@ -16,6 +16,7 @@
 #include "framework/base/text.h"
 #include "framework/batch/run_jobs.h"
 #include "framework/capture/frame_range.h"
+#include "framework/gpu/device.h"
 #include "framework/look/object_matches.h"
 #include "framework/run/run_lock.h"
 
@@ -50,6 +51,9 @@ public:
 
     void finish(const JobsReport& report, std::size_t workers, double seconds) {
         line_.clear();
+        const std::string& fault = report.gl.hardware_fault;
+        if (!fault.empty() && gpu::has_gpu_file("/"))
+            fmt::print(stderr, "{}\n", warning_line(style_, software_warning(fault)));
         fmt::print(stderr, "{}", failures_text(report.frames));
         for (const std::string& warning : objects_.unmatched())
             fmt::print(stderr, "{}\n", warning_line(style_, warning));
@@ -58,9 +62,9 @@ public:
         const int current = count_outcome(report.frames, "current");
         if (current > 0)
             fmt::print(stderr, "{} {} current\n", current, current == 1 ? "frame was" : "frames were");
-        fmt::print(stderr, "{} of {} frames in {:.2f} s by {} {}; {:.2f} frames/s\n", done, frame_count_,
+        fmt::print(stderr, "{} of {} frames in {:.2f} s by {} {}; {:.2f} frames/s{}\n", done, frame_count_,
                    seconds, workers, workers == 1 ? "worker" : "workers",
-                   seconds > 0 ? double(done) / seconds : 0.0);
+                   seconds > 0 ? double(done) / seconds : 0.0, fallback_text(fault));
     }
 
 private:
@@ -95,7 +99,7 @@ private:
 /// This process's command without what is its own. Frames are ranges: a word of a command line has at most
 /// 128 KiB (execve(2), MAX_ARG_STRLEN).
 std::vector<std::string> worker_command(const RunArguments& arguments, const JobPiece& piece,
-                                        std::size_t frames, int threads) {
+                                        std::size_t frames, int threads, const std::string& device) {
     std::vector<std::string> command =
         with_options(own_arguments(), {{"--jobs", ""},
                                        {"--frame-timeout", ""},
@@ -104,7 +108,8 @@ std::vector<std::string> worker_command(const RunArguments& arguments, const Job
                                        {"--progress", "none"},
                                        {"--worker-frames", format_frame_range(piece.frames)},
                                        {"--worker-warmup", std::to_string(piece.warmup_frames)},
-                                       {"--worker-threads", std::to_string(threads)}});
+                                       {"--worker-threads", std::to_string(threads)},
+                                       {"--device", device}});
     std::erase(command, "--stop-on-error");
     // A worker of one frame keeps the journal that the run keeps.
     if (arguments.resume.keeps_journal(frames) && !arguments.resume.resume)
@@ -169,8 +174,11 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     options.pieces = plan_jobs(frames, workers);
     options.warmup_frames = frames.has_history ? frames.warmup_frames : 0;
     options.threads = std::max(1, allotted_cores() / std::max(1, int(options.pieces.size())));
-    options.command = [&](const JobPiece& piece) {
-        return worker_command(arguments, piece, frames.count(), options.threads);
+    std::vector<std::string> devices;  // of the pieces
+    for (int i = 0; i < int(options.pieces.size()); ++i) devices.push_back(chosen_gl(arguments.gl, i).device);
+    options.command = [&](const JobPiece& piece, int number) {
+        return worker_command(arguments, piece, frames.count(), options.threads,
+                              devices[std::size_t(number)]);
     };
     if (arguments.jobs.frame_timeout_s > 0)
         options.frame_timeout = std::chrono::duration<double>(arguments.jobs.frame_timeout_s);
@@ -201,7 +209,7 @@ ExitCode run_by_workers(const RunArguments& arguments, const JobFrames& frames, 
     if (!arguments.jobs.report.empty())
         write_text_file(arguments.jobs.report,
                         report_json({arguments.look, arguments.capture.capture, report.frames, seconds,
-                                     report.exit_code, "", "", report.error}));
+                                     report.exit_code, report.gl, report.error}));
     return report.exit_code;
 }
 

@@ -39,7 +39,7 @@ namespace {
 struct ServeArguments {
     std::string look;
     CaptureOptions capture;
-    std::string backend;
+    GlOptions gl;
     std::vector<std::string> effect_paths;
     int port = 0;
     bool opens = false;
@@ -148,7 +148,8 @@ ExitCode serve(const ServeArguments& arguments) {
     options.sequence = *sequence;
     options.profiles = profiles;
     options.limits = arguments.capture.limits;
-    options.backend = chosen_backend(arguments.backend);
+    options.gl = chosen_gl(arguments.gl);
+    options.drawn_by = warn_of_software;
     options.data_folder = data_path();
     options.effect_folders.assign(arguments.effect_paths.begin(), arguments.effect_paths.end());
     options.port = arguments.port;
@@ -188,7 +189,7 @@ Verb add_serve(CLI::App& app) {
     add_capture_options(app, arguments->capture, "Frames to show, such as 1-24 (default: the capture's)");
     add_effect_path_option(app, arguments->effect_paths);
     add_pass_timeout_option(app, arguments->limits);
-    add_backend_option(app, arguments->backend);
+    add_gl_options(app, arguments->gl);
     return [arguments] { return serve(*arguments); };
 }
 

@@ -108,7 +108,8 @@ std::map<std::string, std::string> environment_of(const SubmitArguments& options
     // Folders of this machine are not those of an image.
     if (options.farm == "kubernetes")
         std::erase_if(environment, [](const auto& variable) {
-            return variable.first != "AFTERSHADE_BACKEND" && variable.first != "AFTERSHADE_DRAW_WITH";
+            return variable.first != "AFTERSHADE_BACKEND" && variable.first != "AFTERSHADE_DEVICE" &&
+                   variable.first != "AFTERSHADE_DRAW_WITH";
         });
     return environment;
 }

@@ -69,7 +69,7 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->check(CLI::IsMember({"cpu", "gl"}))
         ->each(of_memoised("--visibility-on"))
         ->capture_default_str();
-    add_backend_option(app, options.backend);
+    add_gl_options(app, options.gl);
     app.add_flag("--anisotropic-shading", settings.grid.anisotropic,
                  "memoised: coarser shading where lens and shutter blur it");
     app.option_defaults()->group(group);

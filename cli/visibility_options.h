@@ -21,7 +21,7 @@ struct VisibilityArguments {
     std::string grid = "triangle";
     std::string transparency = "stochastic";
     std::string device = "cpu";
-    std::string backend{};
+    GlOptions gl{};
     scene::VisibilitySettings settings;
     bool has_list_nodes = false;
     std::vector<std::string> given{};  ///< options that are of no use without --visibility memoised

@@ -33,12 +33,12 @@ struct WarmOptions {
     CaptureOptions capture;
     std::vector<std::string> effect_paths;
     PluginOptions plugins;
-    std::string backend;
+    GlOptions gl;
 };
 
 /// Seconds to render the frames in a context of its own, to files with these extensions, written where nobody
 /// looks.
-double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& sequence,
+double render_s(const gpu::GlChoice& gl, const Pipeline& pipeline, const Sequence& sequence,
                 const CaptureReader& reader, const RunOptions& run,
                 const std::vector<std::string>& extensions) {
     const ScratchFolder scratch;
@@ -47,7 +47,7 @@ double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& 
         outputs.patterns.push_back((scratch.path() / ("frame_####" + extension)).string());
     const std::atomic<bool> stop = false;
     const auto begin = std::chrono::steady_clock::now();
-    gpu::Context context(backend);
+    gpu::Context context(gl);
     const RunReport report = run_frames(
         {[&]() -> gpu::Context& { return context; }, pipeline, sequence, reader, run, outputs, data_path()},
         {}, stop);
@@ -57,7 +57,7 @@ double render_s(gpu::Backend backend, const Pipeline& pipeline, const Sequence& 
 
 ExitCode warm(const WarmOptions& options) {
     Diagnostics diagnostics;
-    const gpu::Backend backend = chosen_backend(options.backend);
+    const gpu::GlChoice gl = chosen_gl(options.gl);
     EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     const auto look = read_look(options.look, diagnostics);
     const Pipeline pipeline = look ? bind_pipeline(*look, effects, {}, diagnostics) : Pipeline{};
@@ -86,8 +86,8 @@ ExitCode warm(const WarmOptions& options) {
     // What a file takes decides which textures the last pass writes, and so its program.
     double first_s = 0;
     for (const auto& extensions : std::vector<std::vector<std::string>>{{".exr"}, {".png"}, {".exr", ".png"}})
-        first_s += render_s(backend, pipeline, *sequence, reader, run, extensions);
-    const double then_s = render_s(backend, pipeline, *sequence, reader, run, {".exr"});
+        first_s += render_s(gl, pipeline, *sequence, reader, run, extensions);
+    const double then_s = render_s(gl, pipeline, *sequence, reader, run, {".exr"});
     fmt::print("{}: {:.2f} s at first, {:.2f} s from now on\nprograms are in {}\n", options.look, first_s,
                then_s, store.folder().string());
     return ExitCode::done;
@@ -103,7 +103,7 @@ Verb add_warm(CLI::App& app) {
                         "The frame whose roles and size decide the programs (default: the first)");
     add_effect_path_option(app, options->effect_paths);
     add_plugin_options(app, options->plugins);
-    add_backend_option(app, options->backend);
+    add_gl_options(app, options->gl);
     return [options] { return warm(*options); };
 }
 

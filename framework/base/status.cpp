@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <climits>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -50,6 +51,17 @@ std::string sighting_line(const ObjectSighting& sighting) {
                                   {"px", sighting.px}}
                .dump() +
            "\n";
+}
+
+std::string drawn_by_line(const DrawnBy& gl) {
+    for (std::string fault = gl.hardware_fault;; fault.resize(fault.size() * 3 / 4)) {
+        const nlohmann::ordered_json json = {{"event", "gl"},
+                                             {"renderer", shortened(gl.renderer)},
+                                             {"device", shortened(gl.device)},
+                                             {"hardware_fault", fault}};
+        const std::string line = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+        if (line.size() <= PIPE_BUF || fault.empty()) return line;
+    }
 }
 
 std::string last_word_line(int exit_code) {
@@ -103,6 +115,11 @@ void StatusWriter::write(const FrameEvent& event) {
 void StatusWriter::write(const ObjectSighting& sighting) {
     const std::lock_guard lock(mutex_);
     send(sighting_line(sighting));
+}
+
+void StatusWriter::write(const DrawnBy& gl) {
+    const std::lock_guard lock(mutex_);
+    send(drawn_by_line(gl));
 }
 
 void StatusWriter::end(int exit_code) {

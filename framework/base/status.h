@@ -44,12 +44,25 @@ struct ObjectSighting {
     bool operator==(const ObjectSighting&) const = default;
 };
 
+/// What a process draws with, for the process that started it.
+struct DrawnBy {
+    std::string renderer;        ///< "egl: NVIDIA H100 ..., 4.6.0 ..."
+    std::string device;          ///< "/dev/dri/card0"; "" where it has none
+    std::string hardware_fault;  ///< why backend auto took software; "" where it did not
+
+    bool operator==(const DrawnBy&) const = default;
+};
+
 /// One line of JSON with its line end: {"event":"frame","frame":12,"outcome":"done","seconds":0.5}. Never
 /// longer than PIPE_BUF.
 std::string event_line(const FrameEvent& event);
 
 /// One line of JSON with its line end: {"event":"object","index":3,"found":true,"px":0.0}.
 std::string sighting_line(const ObjectSighting& sighting);
+
+/// One line of JSON with its line end: {"event":"gl","renderer":"...","device":"...","hardware_fault":"..."}.
+/// Never longer than PIPE_BUF: a long reason loses its end.
+std::string drawn_by_line(const DrawnBy& gl);
 
 /// One line of JSON with its line end: {"event":"end","code":0}.
 std::string last_word_line(int exit_code);
@@ -76,6 +89,7 @@ public:
     void write(const WorkStatus& status);
     void write(const FrameEvent& event);
     void write(const ObjectSighting& sighting);
+    void write(const DrawnBy& gl);
     /// Last of all: without it an exit code counts for nothing, since any library may call exit().
     void end(int exit_code);
     WorkStatus current() const;

@@ -69,6 +69,8 @@ std::vector<std::string> words_of(const GoldenCase& test, const GoldenRenderOpti
     for (const std::string& path : options.effect_paths) add("--effect-path", path);
     for (const std::string& path : options.plugin_paths) add("--plugin-path", path);
     add("--backend", options.backend);
+    if (const std::string device = options.device ? options.device() : ""; !device.empty())
+        add("--device", device);
     add("--progress", "none");
     words.push_back("--no-journal");
     return words;

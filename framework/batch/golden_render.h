@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace aftershade {
 
 struct GoldenRenderOptions {
     std::string backend = "software";       ///< as `--backend` takes it
+    std::function<std::string()> device{};  ///< of the next case, as `--device` takes it; "" for any
     std::vector<std::string> effect_paths;  ///< folders, the first wins
     std::vector<std::string> plugin_paths;
     std::chrono::milliseconds timeout{600'000};  ///< of one case, wall time

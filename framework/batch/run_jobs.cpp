@@ -50,6 +50,10 @@ public:
         const std::lock_guard lock(mutex_);
         if (listener_.on_object) listener_.on_object(sighting);
     }
+    void drawn_by(const DrawnBy& gl) {
+        const std::lock_guard lock(mutex_);
+        if (gl_.renderer.empty() || !gl.hardware_fault.empty()) gl_ = gl;
+    }
     void ended(ExitCode code, const std::string& error = "") {
         const std::lock_guard lock(mutex_);
         if (code == ExitCode::done || ends_the_run(worst_)) return;
@@ -83,6 +87,7 @@ public:
         JobsReport report;
         report.interrupted = interrupted;
         report.error = error_;
+        report.gl = gl_;
         std::size_t done = 0, skipped = 0;
         for (const auto& [number, event] : frames_) {
             report.frames.push_back(event);
@@ -110,6 +115,7 @@ private:
     std::map<int, FrameEvent> frames_;
     std::atomic<bool> stop_ = false;
     ExitCode worst_ = ExitCode::done;
+    DrawnBy gl_;
     std::string error_;       // of what ended the run
     std::string last_error_;  // of a worker
     std::exception_ptr failure_;
@@ -118,8 +124,12 @@ private:
 /// One piece, by as many workers as it takes.
 class PieceRun {
 public:
-    PieceRun(const JobOptions& options, JobPiece piece, JobBoard& board, const std::atomic<bool>& interrupt)
-        : options_(options), piece_(std::move(piece)), board_(board), interrupt_(interrupt) {}
+    PieceRun(const JobOptions& options, int number, JobBoard& board, const std::atomic<bool>& interrupt)
+        : options_(options),
+          number_(number),
+          piece_(options.pieces[std::size_t(number)]),
+          board_(board),
+          interrupt_(interrupt) {}
 
     void run() {
         for (int idle_workers = 0; idle_workers < kMostIdleWorkers; ++idle_workers) {
@@ -136,7 +146,7 @@ private:
     /// Whether another worker should go on with what is left of the piece.
     bool run_one() {
         WorkerCommand command;
-        command.arguments = options_.command(piece_);
+        command.arguments = options_.command(piece_, number_);
         command.limits.memory_bytes = options_.memory_bytes;
         if (!std::getenv("LP_NUM_THREADS"))
             command.environment["LP_NUM_THREADS"] = std::to_string(options_.threads);
@@ -181,6 +191,7 @@ private:
             board_.frame(event);
         };
         listener.on_object = [&](const ObjectSighting& sighting) { board_.object(sighting); };
+        listener.on_gl = [&](const DrawnBy& gl) { board_.drawn_by(gl); };
         // A frame's beginning, or the end of its passes; one pass or plug-in after the other is no progress.
         listener.on_status = [&](const WorkStatus& status) {
             if (status.frame && status.plugin.empty() && status.pass.empty()) watchdog.heard();
@@ -218,6 +229,7 @@ private:
     }
 
     const JobOptions& options_;
+    int number_;
     JobPiece piece_;
     JobBoard& board_;
     const std::atomic<bool>& interrupt_;
@@ -234,10 +246,10 @@ JobsReport run_jobs(const JobOptions& options, const JobListener& listener, cons
     std::atomic<int> running = int(options.pieces.size());
     {
         std::vector<std::jthread> workers;
-        for (const JobPiece& piece : options.pieces)
-            workers.emplace_back([&, piece] {
+        for (int number = 0; number < int(options.pieces.size()); ++number)
+            workers.emplace_back([&, number] {
                 try {
-                    PieceRun(options, piece, board, end).run();
+                    PieceRun(options, number, board, end).run();
                 } catch (...) {
                     board.failed(std::current_exception());
                 }

@@ -19,8 +19,8 @@ namespace aftershade {
 
 struct JobOptions {
     std::vector<JobPiece> pieces;  ///< one worker each, all at the same time
-    /// A worker's command; the first is the program's path.
-    std::function<std::vector<std::string>(const JobPiece&)> command;
+    /// The command of the worker of the piece `number`; the first is the program's path.
+    std::function<std::vector<std::string>(const JobPiece&, int number)> command;
     int warmup_frames = 0;  ///< before the frames of a worker that continues after a failed one
     int threads = 1;        ///< of each worker, for GL on software and for files
     std::chrono::duration<double> frame_timeout{std::chrono::duration<double>::max()};
@@ -43,6 +43,7 @@ struct JobsReport {
     bool interrupted = false;
     /// done, partial, interrupted; or, where no frame was made, what the workers ended with.
     ExitCode exit_code = ExitCode::done;
+    DrawnBy gl{};       ///< of a worker that fell back to software, else of any
     std::string error;  ///< the message of an error that ended the run for every worker; "" without one
 };
 

@@ -182,6 +182,10 @@ WorkerResult run_worker(const WorkerCommand& command, const WorkerListener& list
             if (listener.on_object) listener.on_object(*sighting);
             return;
         }
+        if (const auto gl = parse_drawn_by(line)) {
+            if (listener.on_gl) listener.on_gl(*gl);
+            return;
+        }
         const auto parsed = parse_status(line);
         if (!parsed) return;
         result.status = *parsed;

@@ -24,6 +24,7 @@ struct WorkerListener {
     std::function<void(const WorkStatus& status)> on_status;
     std::function<void(const FrameEvent& event)> on_frame;
     std::function<void(const ObjectSighting& sighting)> on_object;
+    std::function<void(const DrawnBy& gl)> on_gl;
 };
 
 enum class WorkerEnd {
@@ -67,6 +68,8 @@ std::optional<WorkStatus> parse_status(std::string_view line);
 std::optional<FrameEvent> parse_event(std::string_view line);
 /// Likewise of an object.
 std::optional<ObjectSighting> parse_sighting(std::string_view line);
+/// Likewise of what it draws with.
+std::optional<DrawnBy> parse_drawn_by(std::string_view line);
 /// Likewise of a process's last word.
 std::optional<int> parse_last_word(std::string_view line);
 

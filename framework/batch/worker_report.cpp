@@ -76,6 +76,16 @@ std::optional<ObjectSighting> parse_sighting(std::string_view line) {
                           px != json.end() && px->is_number() ? px->get<double>() : 0};
 }
 
+std::optional<DrawnBy> parse_drawn_by(std::string_view line) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object() || json.value("event", nlohmann::json()) != "gl") return std::nullopt;
+    const auto text = [&](const char* key) {
+        const auto found = json.find(key);
+        return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    return DrawnBy{text("renderer"), text("device"), text("hardware_fault")};
+}
+
 std::optional<int> parse_last_word(std::string_view line) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object() || json.value("event", nlohmann::json()) != "end") return std::nullopt;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace aftershade::gpu {
 
@@ -16,6 +17,14 @@ std::optional<Backend> parse_backend(std::string_view name);
 std::string_view backend_name(Backend backend);
 /// What parse_backend() takes, for messages: "auto, egl, software, egl-software, osmesa".
 std::string backend_names();
+
+/// What a context is made with; a Backend alone is a choice, too.
+struct GlChoice {
+    GlChoice(Backend chosen = Backend::automatic, std::string name = "")
+        : backend(chosen), device(std::move(name)) {}
+    Backend backend;
+    std::string device;  ///< a name of a Device (device.h); "" and "all": any that is not hidden
+};
 
 /// Loads OSMesa's library, where that is the backend: a thread may while the caller reads its documents. What
 /// fails here fails again, and says why, where the context is made. [any thread]

@@ -110,11 +110,11 @@ const GladGLContext& Context::gl() const {
     return impl_->gl;
 }
 
-Context::Impl::Impl(Backend backend) {
+Context::Impl::Impl(const GlChoice& choice) {
     watch_for_forks();
     if (current) current->release();
-    platform = make_platform(backend);
-    info.backend = backend;
+    platform = make_platform(choice);
+    info.backend = choice.backend;
     start();
 }
 
@@ -209,6 +209,7 @@ void Context::Impl::load_functions() {
     info.renderer = gl_string(*platform, GL_RENDERER);
     info.version = gl_string(*platform, GL_VERSION);
     info.vendor = gl_string(*platform, GL_VENDOR);
+    info.device = platform->device();
     info.software = is_software_renderer(info.renderer);
     if (version < GLAD_MAKE_VERSION(4, 5)) {
         throw Error(ErrorKind::gl,

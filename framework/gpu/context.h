@@ -19,6 +19,7 @@ struct ContextInfo {
     std::string version;                   ///< GL_VERSION
     std::string vendor;                    ///< GL_VENDOR
     bool software = false;                 ///< a CPU rasteriser (llvmpipe, softpipe, swrast)
+    std::string device;  ///< that it draws on: "/dev/dri/card0", "EGL device 1"; "" where there is none
     std::string hardware_fault;  ///< of `automatic` that took software: "egl: EGL lists no hardware device"
     int load_units = 0;  ///< images of a shader where a load costs less than a texelFetch (llvmpipe), else 0
     int texture_side_px = 0;  ///< at most (GL_MAX_TEXTURE_SIZE)
@@ -61,7 +62,8 @@ class Context {
 public:
     /// Throws Error(ErrorKind::gl) that lists each backend tried, why it was refused, and a software backend
     /// that works in its place, and Error(ErrorKind::memory) where a limit leaves too little address space.
-    explicit Context(Backend backend, SelfTest when = SelfTest::now);
+    /// Throws Error(ErrorKind::usage) where no device has the name of the choice.
+    explicit Context(const GlChoice& choice, SelfTest when = SelfTest::now);
     /// On EGL, sharing textures, buffers and fences with a context of the caller's, which must outlive this
     /// one. Throws as the other.
     explicit Context(const SharedEglContext& shared);

@@ -28,7 +28,7 @@ struct Limits {
 
 struct Context::Impl {
     /// Throws Error(ErrorKind::gl) whose message is the reason alone; else current in this thread.
-    explicit Impl(Backend backend);
+    explicit Impl(const GlChoice& choice);
     explicit Impl(const SharedEglContext& shared);
     explicit Impl(const Impl& other, std::unique_ptr<Platform> made);
     ~Impl();

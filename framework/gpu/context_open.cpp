@@ -11,6 +11,7 @@
 #include "framework/base/memory_limit.h"
 #include "framework/base/text.h"
 #include "framework/gpu/context_internal.h"
+#include "framework/gpu/device.h"
 #include "framework/gpu/fork_guard.h"
 #include "framework/gpu/self_test.h"
 #include "framework/gpu/texture.h"
@@ -110,7 +111,9 @@ Context::Context(SiblingOf other) {
     impl_ = std::make_unique<Impl>(sibling, sibling.platform->sibling());
 }
 
-Context::Context(Backend backend, SelfTest when) {
+Context::Context(const GlChoice& choice, SelfTest when) {
+    const Backend backend = choice.backend;
+    const bool is_named = names_one_device(choice.device);
     require_not_forked();
     // Mesa does not check every allocation: better refused here than a crash in there.
     require_address_space(kContextBytes, "OpenGL");
@@ -118,21 +121,21 @@ Context::Context(Backend backend, SelfTest when) {
     for (Backend candidate : kBackends) {
         if (!takes(backend, candidate)) continue;
         try {
-            impl_ = std::make_unique<Impl>(candidate);
+            impl_ = std::make_unique<Impl>(GlChoice(candidate, choice.device));
             impl_->is_untested = true;
             if (when == SelfTest::now || backend == Backend::automatic || !impl_->info.software) test_once();
-            if (backend == Backend::automatic && !reasons.empty() && impl_->info.software)
+            if (backend == Backend::automatic && !reasons.empty() && impl_->info.software && !is_named)
                 impl_->info.hardware_fault =
                     fmt::format("{}: {}", backend_name(reasons.front().backend), reasons.front().text);
             return;
         } catch (const Error& error) {
             impl_.reset();
-            if (error.kind() == ErrorKind::memory) throw;
+            if (error.kind() == ErrorKind::memory || error.kind() == ErrorKind::usage) throw;
             const auto* absent = dynamic_cast<const AbsentLibrary*>(&error);
             reasons.push_back({candidate, error.what(), absent ? absent->advice() : ""});
         }
     }
-    throw Refusal(std::move(reasons), other_software_backend(backend));
+    throw Refusal(std::move(reasons), is_named ? std::nullopt : other_software_backend(backend));
 }
 
 void Context::test_once() {

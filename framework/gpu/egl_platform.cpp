@@ -6,94 +6,17 @@
 #include <utility>
 #include <vector>
 
-#include <dlfcn.h>
 #include <fmt/format.h>
-#include <glad/egl.h>
 
 #include "framework/base/error.h"
+#include "framework/base/text.h"
+#include "framework/gpu/driver_faults.h"
+#include "framework/gpu/egl_api.h"
 
 namespace aftershade::gpu {
 namespace {
 
 constexpr unsigned int kGlRenderer = 0x1F01;
-constexpr EGLint kDrmDeviceFile = 0x3233;  // EGL_EXT_device_drm
-
-void* egl_library() {
-    static void* const handle = open_library({"libEGL.so.1"}, "libegl1");
-    return handle;
-}
-
-/// The entry points used here. glad's own EGL table is global, so only its types are taken.
-struct EglApi {
-    PFNEGLGETPROCADDRESSPROC get_proc_address;
-    PFNEGLGETERRORPROC get_error;
-    PFNEGLQUERYSTRINGPROC query_string;
-    PFNEGLGETPLATFORMDISPLAYPROC get_platform_display;
-    PFNEGLINITIALIZEPROC initialize;
-    PFNEGLBINDAPIPROC bind_api;
-    PFNEGLCHOOSECONFIGPROC choose_config;
-    PFNEGLCREATECONTEXTPROC create_context;
-    PFNEGLDESTROYCONTEXTPROC destroy_context;
-    PFNEGLMAKECURRENTPROC make_current;
-    PFNEGLGETCURRENTCONTEXTPROC get_current_context;
-    PFNEGLQUERYCONTEXTPROC query_context;
-    PFNEGLQUERYDEVICESEXTPROC query_devices;             // null where there is no EGL_EXT_device_base
-    PFNEGLQUERYDEVICESTRINGEXTPROC query_device_string;  // likewise
-};
-
-template <typename Function>
-void load(Function& function, const char* name) {
-    void* address = dlsym(egl_library(), name);
-    if (!address) throw Error(ErrorKind::gl, fmt::format("libEGL.so.1 has no {}; EGL 1.5 is needed", name));
-    function = reinterpret_cast<Function>(address);
-}
-
-bool has_extension(const char* extensions, std::string_view name) {
-    const std::string padded = fmt::format(" {} ", extensions ? extensions : "");
-    return padded.find(fmt::format(" {} ", name)) != std::string::npos;
-}
-
-EglApi load_egl() {
-    EglApi egl{};
-    load(egl.get_proc_address, "eglGetProcAddress");
-    load(egl.get_error, "eglGetError");
-    load(egl.query_string, "eglQueryString");
-    load(egl.get_platform_display, "eglGetPlatformDisplay");
-    load(egl.initialize, "eglInitialize");
-    load(egl.bind_api, "eglBindAPI");
-    load(egl.choose_config, "eglChooseConfig");
-    load(egl.create_context, "eglCreateContext");
-    load(egl.destroy_context, "eglDestroyContext");
-    load(egl.make_current, "eglMakeCurrent");
-    load(egl.get_current_context, "eglGetCurrentContext");
-    load(egl.query_context, "eglQueryContext");
-    const char* client = egl.query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-    const bool enumerates = has_extension(client, "EGL_EXT_device_base") ||
-                            (has_extension(client, "EGL_EXT_device_enumeration") &&
-                             has_extension(client, "EGL_EXT_device_query"));
-    if (enumerates && has_extension(client, "EGL_EXT_platform_device")) {
-        egl.query_devices =
-            reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(egl.get_proc_address("eglQueryDevicesEXT"));
-        egl.query_device_string =
-            reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(egl.get_proc_address("eglQueryDeviceStringEXT"));
-    }
-    return egl;
-}
-
-std::string error_name(EGLint code) {
-    switch (code) {
-        case EGL_NOT_INITIALIZED: return "EGL_NOT_INITIALIZED";
-        case EGL_BAD_ACCESS: return "EGL_BAD_ACCESS";
-        case EGL_BAD_ALLOC: return "EGL_BAD_ALLOC";
-        case EGL_BAD_ATTRIBUTE: return "EGL_BAD_ATTRIBUTE";
-        case EGL_BAD_CONFIG: return "EGL_BAD_CONFIG";
-        case EGL_BAD_CONTEXT: return "EGL_BAD_CONTEXT";
-        case EGL_BAD_DISPLAY: return "EGL_BAD_DISPLAY";
-        case EGL_BAD_MATCH: return "EGL_BAD_MATCH";
-        case EGL_BAD_PARAMETER: return "EGL_BAD_PARAMETER";
-        default: return fmt::format("EGL error 0x{:04x}", code);
-    }
-}
 
 /// A variable for the life of the object; Mesa reads LIBGL_ALWAYS_SOFTWARE inside eglInitialize only.
 class ScopedVariable {
@@ -166,6 +89,8 @@ public:
         egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
 
+    std::string device() const override { return name_; }
+
     Proc proc(const char* name) const override { return reinterpret_cast<Proc>(egl_.get_proc_address(name)); }
 
 private:
@@ -205,11 +130,7 @@ private:
         std::optional<ScopedVariable> variable;
         if (force_software) variable.emplace("LIBGL_ALWAYS_SOFTWARE", "1");
         if (egl_.initialize(display_, nullptr, nullptr)) return;
-        throw Error(
-            ErrorKind::gl,
-            fmt::format("{}: eglInitialize failed ({}): the driver does not load or may not open its device; "
-                        "EGL_LOG_LEVEL=debug makes it say why",
-                        name_, error_name(egl_.get_error())));
+        fail("eglInitialize");
     }
 
     EGLConfig config() const {
@@ -227,7 +148,7 @@ private:
 
     [[noreturn]] void fail(std::string_view call) const {
         throw Error(ErrorKind::gl,
-                    fmt::format("{}: {} failed ({})", name_, call, error_name(egl_.get_error())));
+                    fmt::format("{}: {} failed ({})", name_, call, egl_error_name(egl_.get_error())));
     }
 
     EglApi egl_;
@@ -236,23 +157,21 @@ private:
     EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-std::vector<Candidate> device_candidates(const EglApi& egl, Renderer kind) {
-    EGLint count = 0;
-    if (!egl.query_devices || !egl.query_devices(0, nullptr, &count) || count <= 0) return {};
-    std::vector<EGLDeviceEXT> devices(count);
-    egl.query_devices(count, devices.data(), &count);
-    devices.resize(count);
+std::vector<Candidate> device_candidates(const EglApi& egl, Renderer kind, const std::string& name) {
+    const EglDevices found = egl_devices(egl);
     std::vector<Candidate> result;
-    for (std::size_t i = 0; i < devices.size(); ++i) {
-        const char* extensions = egl.query_device_string(devices[i], EGL_EXTENSIONS);
-        const bool software = has_extension(extensions, "EGL_MESA_device_software");
-        if (software != (kind == Renderer::software)) continue;
-        std::string name = fmt::format("EGL device {}", i);
-        if (has_extension(extensions, "EGL_EXT_device_drm")) {
-            if (const char* file = egl.query_device_string(devices[i], kDrmDeviceFile)) name = file;
-        }
-        result.push_back({EGL_PLATFORM_DEVICE_EXT, devices[i], name, false});
-    }
+    if (found.devices.empty()) return result;
+    for (const Device& device : devices_named(found.devices, name))
+        if (device.is_software == (kind == Renderer::software))
+            result.push_back(
+                {EGL_PLATFORM_DEVICE_EXT, found.handles[std::size_t(device.index)], device.name(), false});
+        else if (names_one_device(name))
+            throw Error(ErrorKind::gl, device.is_software
+                                           ? device.text() + " draws in software; egl-software takes it"
+                                           : device.text() + " is a GPU; egl takes it");
+    if (result.empty() && kind == Renderer::hardware)
+        if (const std::string hidden = hidden_text(found.devices); !hidden.empty())
+            throw Error(ErrorKind::gl, hidden);
     return result;
 }
 
@@ -286,30 +205,33 @@ std::unique_ptr<Platform> make_egl_platform(const SharedEglContext& shared) {
     throw Error(ErrorKind::gl, "eglMakeCurrent succeeded but there is no GL (GL_VERSION is null)");
 }
 
-std::unique_ptr<Platform> make_egl_platform(Renderer kind) {
+std::unique_ptr<Platform> make_egl_platform(Renderer kind, const std::string& device) {
     // One at a time in the process: ScopedVariable changes its environment.
     static std::mutex opening;
     const std::lock_guard lock(opening);
     const EglApi egl = load_egl();
-    std::vector<Candidate> candidates = device_candidates(egl, kind);
+    std::vector<Candidate> candidates = device_candidates(egl, kind, device);
     const char* client = egl.query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-    if (kind == Renderer::software && has_extension(client, "EGL_MESA_platform_surfaceless")) {
+    if (kind == Renderer::software && !names_one_device(device) &&
+        has_extension(client, "EGL_MESA_platform_surfaceless")) {
         candidates.push_back({EGL_PLATFORM_SURFACELESS_MESA, nullptr, "EGL surfaceless", true});
     }
-    std::string reasons;
+    std::vector<std::string> reasons;
     for (const Candidate& candidate : candidates) {
         try {
             return open_candidate(egl, candidate, kind);
         } catch (const Error& error) {
-            reasons += (reasons.empty() ? "" : "; ") + std::string(error.what());
+            reasons.emplace_back(error.what());
         }
     }
-    if (!reasons.empty()) throw Error(ErrorKind::gl, reasons);
-    throw Error(ErrorKind::gl,
-                kind == Renderer::hardware
-                    ? "EGL lists no hardware device"
-                    : "EGL lists no software device: it finds no Mesa among its vendors (Debian "
-                      "package libegl-mesa0), or __EGL_VENDOR_LIBRARY_FILENAMES leaves it out");
+    std::vector<std::string> faults =
+        kind == Renderer::hardware ? hardware_faults("/") : software_faults("/");
+    if (reasons.empty())
+        reasons.emplace_back(kind == Renderer::hardware ? "EGL lists no hardware device"
+                                                        : "EGL lists no software device");
+    else if (faults.empty()) faults.emplace_back("EGL_LOG_LEVEL=debug makes the driver say more");
+    reasons.insert(reasons.end(), faults.begin(), faults.end());
+    throw Error(ErrorKind::gl, joined(reasons, "; ", "; "));
 }
 
 }  // namespace aftershade::gpu

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "framework/gpu/platform.h"
 
@@ -9,9 +10,10 @@ namespace aftershade::gpu {
 
 enum class Renderer { hardware, software };
 
-/// Tries every EGL device of the kind asked for; a renderer of the other kind is refused.
-/// Throws Error(ErrorKind::gl) whose message is the reason alone.
-std::unique_ptr<Platform> make_egl_platform(Renderer kind);
+/// Tries every EGL device of the kind and the name asked for ("": any); a renderer of the other kind is
+/// refused. Throws Error(ErrorKind::gl) whose message is the reason alone, and Error(ErrorKind::usage) where
+/// no device has the name.
+std::unique_ptr<Platform> make_egl_platform(Renderer kind, const std::string& device);
 /// A context that shares objects with the caller's, of whichever renderer. Throws likewise.
 std::unique_ptr<Platform> make_egl_platform(const SharedEglContext& shared);
 

@@ -2,18 +2,24 @@
 
 #include <exception>
 
+#include "framework/base/error.h"
 #include "framework/base/memory_limit.h"
 #include "framework/gpu/backend.h"
+#include "framework/gpu/device.h"
 #include "framework/gpu/driver_cache.h"
 #include "framework/gpu/egl_platform.h"
 #include "framework/gpu/osmesa_platform.h"
 
 namespace aftershade::gpu {
 
-std::unique_ptr<Platform> make_platform(Backend backend) {
+std::unique_ptr<Platform> make_platform(const GlChoice& choice) {
     prepare_driver_cache();
-    if (backend == Backend::osmesa) return make_osmesa_platform();
-    return make_egl_platform(backend == Backend::egl_software ? Renderer::software : Renderer::hardware);
+    const bool is_osmesa = choice.backend == Backend::osmesa;
+    if (is_osmesa && names_one_device(choice.device))
+        throw Error(ErrorKind::gl, "OSMesa draws on no device; name none, or take another backend");
+    if (is_osmesa) return make_osmesa_platform();
+    return make_egl_platform(
+        choice.backend == Backend::egl_software ? Renderer::software : Renderer::hardware, choice.device);
 }
 
 void load_ahead(Backend backend) noexcept {

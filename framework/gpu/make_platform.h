@@ -7,7 +7,8 @@
 
 namespace aftershade::gpu {
 
-/// Throws Error(ErrorKind::gl) whose message is the reason alone.
-std::unique_ptr<Platform> make_platform(Backend backend);
+/// Of one backend. Throws Error(ErrorKind::gl) whose message is the reason alone, and Error(ErrorKind::usage)
+/// where no device has the name of the choice.
+std::unique_ptr<Platform> make_platform(const GlChoice& choice);
 
 }  // namespace aftershade::gpu

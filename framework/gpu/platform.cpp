@@ -9,6 +9,7 @@
 #include "framework/base/error.h"
 #include "framework/base/memory_limit.h"
 #include "framework/base/text.h"
+#include "framework/gpu/driver_faults.h"
 
 namespace aftershade::gpu {
 
@@ -47,8 +48,8 @@ void* open_library(std::initializer_list<const char*> names, std::string_view pa
         const char* said = dlerror();
         const std::string message = said ? said : name;
         if (said && !is_absent(message, name))
-            throw Error(ErrorKind::gl,
-                        fmt::format("{} is there, but the loader refuses it: {}", name, message));
+            throw Error(ErrorKind::gl, fmt::format("{} is there, but the loader refuses it: {}{}", name,
+                                                   message, loader_remedy(message)));
         if (absent.empty()) absent = message;
     }
     throw AbsentLibrary(absent, fmt::format("; install the Debian package {}", package));

@@ -33,6 +33,8 @@ public:
     /// thread once it is made. Throws Error(ErrorKind::gl). [any thread]
     virtual std::unique_ptr<Platform> sibling() const = 0;
     virtual Proc proc(const char* name) const = 0;
+    /// The device that it draws on: "/dev/dri/card0", "EGL device 1"; "" where it has none.
+    virtual std::string device() const { return ""; }
 };
 
 /// True for the GL_RENDERER of a CPU rasteriser.

@@ -8,6 +8,7 @@
 
 #include "framework/base/error.h"
 #include "framework/effect/program_store.h"
+#include "framework/gpu/device.h"
 #include "framework/host/host_data.h"
 #include "framework/host/image_data.h"
 #include "framework/host/rendering.h"
@@ -41,6 +42,8 @@ void check_host_options(const HostOptions& options) {
         faults.error({"HostOptions::backend"}, fmt::format("{} is not a backend", int(options.backend)));
     if (options.share && (!options.share->display || !options.share->context))
         faults.error({"HostOptions::share"}, "display and context may not be null");
+    if (options.share && !options.device.empty())
+        faults.error({"HostOptions::device"}, "is the device of the shared context; leave it empty");
     if (options.share && options.backend == Backend::osmesa)
         faults.error({"HostOptions::share"}, "EGL objects cannot be shared with OSMesa");
     if (options.limits.max_side_px < 1 || options.limits.max_side_px > kMaxSide_px)
@@ -88,10 +91,16 @@ EffectRegistry Host::Data::registry() const {
 
 gpu::Context& Host::Data::context() {
     if (!context_) {
+        Diagnostics faults;
+        if (const std::string fault = gpu::device_fault(options.device); !fault.empty())
+            faults.error({"HostOptions::device"}, fault);
+        stop_at_errors(ErrorKind::usage, faults);
         if (options.share)
             context_ = std::make_unique<gpu::Context>(
                 gpu::SharedEglContext{options.share->display, options.share->context});
-        else context_ = std::make_unique<gpu::Context>(internal_backend(options.backend));
+        else
+            context_ = std::make_unique<gpu::Context>(
+                gpu::GlChoice(internal_backend(options.backend), options.device));
     }
     context_->make_current();
     return *context_;
@@ -188,7 +197,9 @@ GlInfo Host::gl() {
     Data& data = Access::host(*this);
     return called(data, [&] {
         const gpu::ContextInfo& info = data.context().info();
-        return GlInfo{Backend(int(info.backend)), info.renderer, info.version, info.vendor, info.software};
+        return GlInfo{
+            Backend(int(info.backend)), info.renderer, info.version, info.vendor, info.software, info.device,
+            info.hardware_fault};
     });
 }
 

@@ -102,12 +102,13 @@ void draw_for(const ServeOptions& options, int socket) {
     StatusWriter status;
     std::optional<PictureMaker> maker;
     try {
-        maker.emplace(options.sequence, options.profiles, options.limits, options.backend,
-                      options.data_folder, status);
+        maker.emplace(options.sequence, options.profiles, options.limits, options.gl, options.data_folder,
+                      status);
     } catch (const Error& error) {
         send_answer(socket, {500, std::to_string(int(error.kind())), error.what()});
         return;
     }
+    if (options.drawn_by) options.drawn_by(maker->gl());
     if (!send_answer(socket, {})) return;
     Looks looks(options);
     while (const auto request = receive_request(socket))

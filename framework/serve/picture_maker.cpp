@@ -44,12 +44,12 @@ std::string joined_roles(const std::vector<std::string>& roles) {
 }  // namespace
 
 PictureMaker::PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits,
-                           gpu::Backend backend, std::filesystem::path data_folder, StatusWriter& status)
+                           const gpu::GlChoice& gl, std::filesystem::path data_folder, StatusWriter& status)
     : sequence_(std::move(sequence)),
       reader_(sequence_, std::move(profiles), limits),
       limits_(limits),
       status_(status),
-      context_(backend),
+      context_(gl),
       programs_(
           std::make_shared<ProgramCache>(context_, data_folder / "glsl", ProgramStore::from_environment())) {}
 

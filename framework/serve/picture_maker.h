@@ -40,10 +40,11 @@ class PictureMaker {
 public:
     /// Copies the sequence; `status`, which receives the pass at work, must outlive this. Throws
     /// Error(ErrorKind::gl) without a context.
-    PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, gpu::Backend backend,
+    PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, const gpu::GlChoice& gl,
                  std::filesystem::path data_folder, StatusWriter& status);
     ~PictureMaker();
 
+    const gpu::ContextInfo& gl() const { return context_.info(); }
     /// Throws Error as `run` does.
     MadePicture make(const PictureRequest& request);
     /// Every role's value at a pixel of the whole picture, and the result's.

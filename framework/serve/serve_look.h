@@ -23,7 +23,8 @@ struct ServeOptions {
     Sequence sequence;
     std::vector<Profile> profiles;
     ReadLimits limits{};
-    gpu::Backend backend = gpu::Backend::automatic;
+    gpu::GlChoice gl{};
+    std::function<void(const gpu::ContextInfo&)> drawn_by;  ///< called once, in the process that draws
     std::filesystem::path data_folder;
     std::vector<std::filesystem::path> effect_folders;  ///< searched before the shipped one
     int port = 0;                                       ///< 0: a free one

@@ -91,6 +91,8 @@ class Host:
     :param profile_paths: folders of producers' profiles, likewise
     :param plugin_paths: folders of native plug-ins, whose code runs in this process
     :param backend: "auto", "egl", "software", "egl-software" or "osmesa"; by default $AFTERSHADE_BACKEND, else "auto"
+    :param device: device to draw on, by a name that `aftershade doctor` lists, such as "0", "card0" or "cuda:0"; by
+        default $AFTERSHADE_DEVICE, else the first that works
     :param cache: folder for compiled programs; by default nothing is kept
     :param max_side_px: images with a longer side are refused, from 1 to 65536
     :param max_image_bytes: likewise, of the channels of one file
@@ -104,16 +106,21 @@ class Host:
         profile_paths: Iterable[PathLike] = (),
         plugin_paths: Iterable[PathLike] = (),
         backend: str | None = None,
+        device: str | None = None,
         cache: PathLike = "",
         max_side_px: int = 16384,
         max_image_bytes: int = 512 * 1024 * 1024,
     ) -> None:
+        backend = backend or os.environ.get("AFTERSHADE_BACKEND") or "auto"
+        # The variable says nothing of backends that draw in software.
+        usual = os.environ.get("AFTERSHADE_DEVICE", "") if backend in ("auto", "egl") else ""
         self._native = _native.Host(
             Path(data or shipped_data()),
             [Path(one) for one in effect_paths],
             [Path(one) for one in profile_paths],
             [Path(one) for one in plugin_paths],
-            backend or os.environ.get("AFTERSHADE_BACKEND") or "auto",
+            backend,
+            device or usual,
             cache,
             max_side_px,
             max_image_bytes,
@@ -128,7 +135,8 @@ class Host:
         return self._native.is_closed
 
     def gl(self) -> dict[str, Any]:
-        """Backend, renderer, version and vendor of the context, which this makes if there is none yet."""
+        """Backend, device, renderer, version and vendor of the context, and why "auto" took software, if it did. This
+        makes the context if there is none yet."""
         return self._native.gl()
 
     def effects(self) -> list[Effect]:

@@ -25,14 +25,15 @@ api::Backend backend_from(const std::string& name) {
 
 HostPointer make_host(const fs::path& data, const std::vector<fs::path>& effect_paths,
                       const std::vector<fs::path>& profile_paths, const std::vector<fs::path>& plugin_paths,
-                      const std::string& backend, const fs::path& cache, int max_side_px,
-                      std::uint64_t max_image_bytes) {
+                      const std::string& backend, const std::string& device, const fs::path& cache,
+                      int max_side_px, std::uint64_t max_image_bytes) {
     api::HostOptions options;
     options.data = data;
     options.effect_paths = effect_paths;
     options.profile_paths = profile_paths;
     options.plugin_paths = plugin_paths;
     options.backend = backend_from(backend);
+    options.device = device;
     options.cache = cache;
     options.limits = {max_side_px, max_image_bytes};
     return std::make_shared<SharedHost>(std::move(options));
@@ -121,7 +122,7 @@ void bind_host(nb::module_& module) {
     module.def("library_version", [] { return std::string(api::library_version()); });
     nb::class_<SharedHost>(module, "Host")
         .def(nb::new_(&make_host), "data"_a, "effect_paths"_a, "profile_paths"_a, "plugin_paths"_a,
-             "backend"_a, "cache"_a, "max_side_px"_a, "max_image_bytes"_a)
+             "backend"_a, "device"_a, "cache"_a, "max_side_px"_a, "max_image_bytes"_a)
         .def("close", [](SharedHost& self) { self.call([&] { self.host.close(); }); })
         .def_prop_ro("is_closed", [](const SharedHost& self) { return self.host.is_closed(); })
         .def("gl",
@@ -133,6 +134,8 @@ void bind_host(nb::module_& module) {
                  result["version"] = info.version;
                  result["vendor"] = info.vendor;
                  result["is_software"] = info.is_software;
+                 result["device"] = info.device;
+                 result["hardware_fault"] = info.hardware_fault;
                  return result;
              })
         .def("effects",

@@ -30,7 +30,7 @@ JobOptions jobs_of_script(const std::string& for_frame, std::vector<JobPiece> pi
         for_frame + "\ndone\n";
     JobOptions options;
     options.pieces = std::move(pieces);
-    options.command = [script](const JobPiece& piece) {
+    options.command = [script](const JobPiece& piece, int) {
         std::vector<std::string> words{"/bin/sh", "-c", script, "worker",
                                        std::to_string(piece.warmup_frames)};
         for (const int frame : piece.frames) words.push_back(std::to_string(frame));

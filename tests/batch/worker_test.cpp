@@ -1,10 +1,12 @@
 #include "framework/batch/worker.h"
 
 #include <gtest/gtest.h>
+
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <thread>
 
 #include "framework/base/error.h"
@@ -187,6 +189,18 @@ TEST(Status, HasWhichObjectsOfALookFramesHad) {
     EXPECT_EQ(parse_sighting(last_word_line(5)), std::nullopt);
     EXPECT_EQ(parse_sighting(R"({"event":"object","index":"3","found":true})"), std::nullopt);
     EXPECT_EQ(parse_sighting(R"({"event":"object","index":3,"found":1})"), std::nullopt);
+}
+
+TEST(Status, HasWhatAProcessDrawsWith) {
+    const DrawnBy gl{"egl: NVIDIA H100, 4.6.0", "/dev/dri/card0", "egl: \"x\"\n"};
+    EXPECT_EQ(parse_drawn_by(drawn_by_line(gl)), gl);
+    EXPECT_EQ(parse_status(drawn_by_line(gl)), WorkStatus{}) << "an older program reads nothing from it";
+    EXPECT_EQ(parse_drawn_by(last_word_line(5)), std::nullopt);
+    const DrawnBy longer{"r", "d", std::string(9000, '\1')};  // six bytes each in JSON
+    EXPECT_LE(drawn_by_line(longer).size(), std::size_t(PIPE_BUF));
+    const std::string kept = parse_drawn_by(drawn_by_line(longer))->hardware_fault;
+    EXPECT_GT(kept.size(), 400U);
+    EXPECT_EQ(kept, longer.hardware_fault.substr(0, kept.size()));
 }
 
 TEST(Status, AnyTextComesBackAndALineFitsOneWrite) {

@@ -46,6 +46,22 @@ TEST_F(Merge, PutsTheFramesOfAllTasksInOrderAndAddsTheirSecondsUp) {
     EXPECT_EQ(merged["exit_code"], 0);
 }
 
+TEST_F(Merge, SaysWhereATaskFellBackToSoftware) {
+    const auto task = [&](const std::string& name, const std::string& gl) {
+        report(name, frame(name[3] - '0', "done") + R"( ], "more": [)");
+        std::string text = read_text(folder_ / ("reports/" + name));
+        text.replace(text.rfind('}'), 1, gl + "}");
+        write_text(folder_ / ("reports/" + name), text);
+    };
+    task("0001.json", R"(, "renderer": "egl: Card", "hardware_not_usable": false)");
+    task("0002.json", R"(, "renderer": "osmesa: llvmpipe", "hardware_fault": "egl: none")");
+    task("0003.json", R"(, "renderer": "egl: Card", "hardware_not_usable": false)");
+    merge({"reports"}, 0);
+    EXPECT_EQ(all()["renderer"], "osmesa: llvmpipe");
+    EXPECT_EQ(all()["hardware_not_usable"], true);
+    EXPECT_EQ(all()["hardware_fault"], "egl: none");
+}
+
 TEST_F(Merge, ListsTheFramesThatFailedAndExitsOne) {
     report("0001.json", frame(1, "done") + "," + frame(2, "failed", "in_0002.exr: damaged"));
     report("0002.json", frame(3, "not run"));

@@ -239,6 +239,11 @@ std::vector<Misuse> misuses_of_hosts() {
         {"limits of nothing",
          [](Bench&) { Host({.data = AFTERSHADE_SOURCE_DIR, .limits = {.max_side_px = 0}}); }, Kind::usage,
          "from 1 to 65536", "HostOptions::limits"},
+        {"a device that is not there",
+         [](Bench&) {
+             Host({.data = AFTERSHADE_SOURCE_DIR, .backend = Backend::egl_software, .device = "card77"}).gl();
+         },
+         Kind::usage, "device 'card77' is not there; EGL lists 0", "HostOptions::device"},
         {"a closed host",
          [](Bench& b) {
              b.look.render(b.capture);

@@ -313,6 +313,7 @@ MISUSES = {
     "tap that was not wanted": (lambda host: aftershade.Look(BLUR, host=host).render(frame_arrays()).tap("bokeh.coc"), aftershade.UsageError, "coc"),
     "role that was not made": (lambda host: aftershade.Look(BLUR, host=host).render(frame_arrays())["normal"], aftershade.UsageError, "normal"),
     "unknown backend": (lambda host: aftershade.Host(backend="vulkan"), ValueError, "vulkan"),
+    "unknown device": (lambda host: aftershade.Host(backend="egl-software", device="card77").gl(), aftershade.UsageError, "'card77' is not there"),
     "no data": (lambda host: aftershade.Host(data="/nowhere"), aftershade.UsageError, "/nowhere"),
     "unwritable": (
         lambda host: aftershade.Look(BLUR, host=host).render(frame_arrays()).write("/proc/out.exr"),

@@ -72,12 +72,17 @@ struct HostOptions {
     HostLimits limits{};
     /// Keeps compiled programs for later Hosts; made when it is needed; never fails. Empty: nothing is kept.
     std::filesystem::path cache{};
+    /// The device to draw on, by a name that `aftershade doctor` lists: "0", "card0", "0000:65:00.0",
+    /// "GPU-6bcd0a81", "cuda:0". Empty or "all": the first that works. Not with `share`.
+    std::string device{};
 };
 
 struct GlInfo {
     Backend backend = Backend::automatic;  ///< never `automatic` or `software`
     std::string renderer, version, vendor;
-    bool is_software = false;  ///< renders on the CPU
+    bool is_software = false;      ///< renders on the CPU
+    std::string device{};          ///< "/dev/dri/card0", "EGL device 1"; empty where there is none
+    std::string hardware_fault{};  ///< why `automatic` took software; empty where it did not
 };
 
 /// A name and one line.
