@@ -12,7 +12,7 @@ TAG = re.compile(r"<[a-z/][^>]*>")
 LIST_ITEM = re.compile(r"\s*(?:[-*]|\d+\.)\s+")
 CELLS = re.compile(r"(?<!\\)\|")
 # A sentence ends where a capital, a digit, code or a bracket follows the mark.
-END = re.compile(r"(?<!\be\.g)(?<!\bi\.e)(?<!\bal)(?<!\b[A-Z])([.!?][)\"*_]*)\s+(?=[A-Z0-9\"(`*_\[]|[\w-]+[.](?:md|h|json)\b)")
+END = re.compile(r"(?<!\be\.g)(?<!\bi\.e)(?<!\bal)(?<!\b[A-Z])([.!?][)\"*_]*)\s+(?=[A-Z0-9\"(`*_\[]|[\w-]+[.](?:md|h|json)\b|llvmpipe|idiff)")
 WORD = re.compile(r"[A-Za-z0-9][\w'’./+-]*|`")
 
 MEAN_WORDS = 18
