@@ -57,8 +57,8 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->check(CLI::IsMember({"stochastic", "lists", "sorted"}))
         ->capture_default_str();
     app.add_option("--list-nodes", settings.transparency.list_nodes,
-                   "--transparency lists: surfaces for each px that a row has room for; what is beyond is "
-                   "counted and stops samples by chance")
+                   "--transparency lists: surfaces for each px that a row has room for; further ones "
+                   "are counted, and stop samples at random")
         ->check(CLI::Range(0, scene::kMaxListNodes))
         ->each([&options](const std::string&) { options.has_list_nodes = true; })
         ->capture_default_str();

@@ -198,8 +198,8 @@ std::string type_text(const ParamSpec& spec) {
 std::string default_text(const ParamSpec& spec) {
     const auto own = spec.type->default_text;
     const std::string value = own ? own(spec) : format_value(spec, spec.default_value);
-    return value + (spec.unit.empty() ? "" : " " + spec.unit) +
-           (spec.from.empty() ? "" : "; before it " + spec.from);
+    return (spec.from.empty() ? "" : spec.from + ", else ") + value +
+           (spec.unit.empty() ? "" : " " + spec.unit);
 }
 
 std::string describe_text(const EffectManifest& manifest, bool verbose) {

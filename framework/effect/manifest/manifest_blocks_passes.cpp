@@ -247,7 +247,7 @@ const Block& read_block() {
     static const Block block{
         .name = "read",
         .thing = "the read of '{}'",
-        .doc = "How a pass samples what it reads.",
+        .doc = "How a pass samples an image.",
         .keys = {optional("filter", choice(kFilters),
                           "Filter between texels; `pixel`: no sampler, but the texel at the pixel itself "
                           "([fused passes](#fused-passes)).",
