@@ -34,7 +34,7 @@ RULES = [
     ("'as ever', 'all the same': write also then", r"\bas ever\b|\ball the same\b"),
     ("'the one that ... has': name the value", r"\bthe most that\b|\bthe fewest that\b"),
     ("'wants' of a thing: write needs", r"\b(it|that|which|one|model|skin) (usually )?wants\b"),
-    ("'by it' or 'of it' at the end: name the thing", r"\b(by|of|from|beside|behind|before) it[.]$"),
+    ("'by it' at the end: name the thing", r"\b(by|for) it[.]$"),
 ]
 COMPILED = [(name, re.compile(pattern, re.I if pattern.startswith(r"\b") else 0)) for name, pattern in RULES]
 
