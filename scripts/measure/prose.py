@@ -13,6 +13,8 @@ LIST_ITEM = re.compile(r"\s*(?:[-*]|\d+\.)\s+")
 CELLS = re.compile(r"(?<!\\)\|")
 # A sentence ends where a capital, a digit, code or a bracket follows the mark.
 END = re.compile(r"(?<!\be\.g)(?<!\bi\.e)(?<!\bal)(?<!\b[A-Z])([.!?][)\"*_]*)\s+(?=[A-Z0-9\"(`*_\[]|[\w-]+[.](?:md|h|json)\b|llvmpipe|idiff)")
+# In declarations, "value: what it means." and "; value: what it means." are entries of a list.
+ENTRY = re.compile(r"([.;:])\s+(?=[a-z][a-z0-9_]*: )")
 WORD = re.compile(r"[A-Za-z0-9][\w'’./+-]*|`")
 
 MEAN_WORDS = 18
@@ -88,7 +90,7 @@ def sentences(page: str) -> list[Sentence]:
     found = []
     for line, text, is_cell in blocks(page):
         at = 0
-        words = plain(text)
+        words = ENTRY.sub(r". `", plain(text))
         for end in [*END.finditer(words), None]:
             sentence = words[at:end.end(1) if end else len(words)].strip(" *")
             if WORD.search(sentence):
