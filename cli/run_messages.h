@@ -49,7 +49,7 @@ private:
 
 class RunReporter {
 public:
-    /// Of `frame_count` frames the first ones only warm history up.
+    /// The first of the `frame_count` frames only warm up history.
     RunReporter(ProgressStyle style, int frame_count, int warmup_frames, bool verbose)
         : style_(style), frame_count_(frame_count), warmup_frames_(warmup_frames), verbose_(verbose) {}
 

@@ -43,7 +43,7 @@ struct WorkerResult {
     std::optional<int> last_word;  ///< the exit code that the worker itself announced, if it did
     WorkerLimits limits;           ///< those of the command, for describe()
 
-    /// Of any program: `aftershade` says so itself, see ended_in_order().
+    /// Whether any program succeeded; for `aftershade` itself see ended_in_order().
     bool succeeded() const { return end == WorkerEnd::exited && exit_code == 0; }
     /// Whether `aftershade` came to the end of its work: a library that calls exit() gives no last word.
     bool ended_in_order() const { return end == WorkerEnd::exited && last_word == exit_code; }

@@ -73,7 +73,7 @@ struct Capture {
     bool motion_from_camera = false;
     /// Pixels with light and an albedo below the floor, where irradiance is light divided by the albedo.
     std::size_t pixels_below_albedo_floor = 0;
-    /// Of a deep capture: what became of its samples, and as how many layers.
+    /// For a deep capture: the reduction of its samples, and the number of layers.
     std::optional<DeepReduction> deep;
     int deep_layers = 0;
     /// By role, as they were read; filled by whoever looks for them (framework/run/nan_policy.h).

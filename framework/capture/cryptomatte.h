@@ -81,7 +81,7 @@ struct ObjectCoverage {
     std::string name;        ///< of the manifest; the id as eight hexadecimal digits where it has none
     double coverage_px = 0;  ///< summed over all pixels and ranks
 };
-/// Of all objects of the manifest and all ids in the pixels, those that cover most first. Throws as
+/// The coverage of all objects of the manifest and all ids in the pixels, the largest first. Throws as
 /// cryptomatte_mask does.
 std::vector<ObjectCoverage> coverage_of_objects(const FrameFile& file, const CryptomatteLayer& layer,
                                                 const Window& grid);

@@ -29,8 +29,8 @@ struct DeepReduction {
     std::uint64_t nan_pixels = 0;     ///< where a sample has no depth, and counts as behind all others
     std::size_t first_nan = 0;        ///< by rows
     std::uint64_t merged_pixels = 0;  ///< that have more gaps than layers can show
-    /// Of |ln(depth of the sample / depth of its layer)|, weighted by what each sample shows in its layer:
-    /// the mean, and the largest mean of one pixel. A hundredth moves what is seen by 1 % in depth.
+    /// Mean of |ln(depth of the sample / depth of its layer)|, weighted by each sample's visible share, and
+    /// the largest mean of one pixel. 0.01 means that the visible surface moved by 1 % in depth.
     double mean_shift = 0;
     double most_shift = 0;
 

@@ -64,9 +64,9 @@ public:
     virtual std::optional<Keyed> keyed(const Node&) const { return std::nullopt; }
     /// A sound value of a parameter's type.
     virtual std::optional<ParamValue> value(const Node&) const { return std::nullopt; }
-    /// Of a choice; empty for others.
+    /// The choices of a choice; empty for other forms.
     virtual std::vector<std::string> choices() const { return {}; }
-    /// Of a list; nullptr for others.
+    /// The form of a list's items; nullptr for other forms.
     virtual const Form* item() const { return nullptr; }
 };
 

@@ -20,8 +20,8 @@ std::string reference_of(const Block& document);
 
 /// Tables by name: "golden.case".
 using Tables = std::map<std::string, std::string>;
-/// Of every block that the documents refer to, as "<document>.<block>"; of one that two have in common, only
-/// the first's.
+/// The table of every block that the documents refer to, as "<document>.<block>". A block that two documents
+/// share has one table, under the first one's name.
 Tables tables_of(const std::vector<std::pair<std::string, const Block*>>& documents);
 
 /// The page with its marked regions written again:

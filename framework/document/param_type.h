@@ -57,7 +57,7 @@ struct TexelSize {
     int channels = 1;  ///< 1 or 4, each a 32-bit float
 };
 
-/// Of a resource: its texture, read by texelFetch alone.
+/// Traits of a resource's texture, which texelFetch alone reads.
 struct ParamTextureTraits {
     std::string_view label;  ///< after the parameter's name, in the frame graph
     TexelSize (*size)(const ParamValue& value) = nullptr;
@@ -67,7 +67,7 @@ struct ParamTextureTraits {
     std::string (*glsl)(const ParamSpec& spec, int binding) = nullptr;
 };
 
-/// Of a resource: its storage block, looked up by object. Its rows have `columns` of the spec.
+/// Traits of a resource's storage block, looked up by object. Its rows have `columns` of the spec.
 struct ParamTableTraits {
     std::size_t (*entries)(const ParamValue& value) = nullptr;  ///< count_entries() of its rows
     TableValue (*rows)(const ParamValue& value) = nullptr;
@@ -108,7 +108,7 @@ struct ParamTypeTraits {
     std::string (*type_text)(const ParamSpec& spec) = nullptr;
     /// For people, without unit; null: as `format`.
     std::string (*default_text)(const ParamSpec& spec) = nullptr;
-    /// Of its own keys, what `describe --json` says; null: nothing.
+    /// The type's own keys for `describe --json`; null: none.
     nlohmann::ordered_json (*describe)(const ParamSpec& spec) = nullptr;
 
     // block: must be there

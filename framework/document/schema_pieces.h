@@ -44,7 +44,7 @@ public:
     Variables variables() const { return variables_; }
     /// A variable may stand for the part where there are variables.
     json part(json form) const;
-    /// Of the parameter, or the column, that is part of another.
+    /// Schema of the parameter, or the column, that is part of another.
     json literal(const ParamSpec& spec) const;
     /// A table's row: the cells, and by one key which objects it is for.
     json keyed_row(json cells) const;

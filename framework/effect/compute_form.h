@@ -1,5 +1,5 @@
-// A fragment shader over a target as a compute shader that stores its texels: GPUs of data centres draw with a
-// few of their multiprocessors and compute with all (docs/gpu.md).
+// A fragment shader over a target as a compute shader that stores its texels: GPUs of data centres draw with
+// a few of their multiprocessors and compute with all (docs/gpu.md).
 #pragma once
 
 #include <map>
@@ -20,14 +20,14 @@ struct DrawShape {
     std::vector<gpu::TextureFormat> targets;  ///< by location
     int first_target_unit = 0;                ///< image units of the targets, which rise from it
     bool has_levels = false;                  ///< some sampler sees several levels of its texture
-    /// Of a pass over tiles: the name of its buffer of rectangles. The block of glsl/host/tiles.vert is bound.
+    /// Name of the buffer of rectangles, for a pass over tiles. The block of glsl/host/tiles.vert is bound.
     std::optional<std::string> tile_runs{};
 };
 
-/// Makes of `source`, which draws, a compute shader for gpu::dispatch_over(): gl_FragCoord becomes a variable,
-/// the outputs too, which are stored once main() has ended, unless that discarded the pixel. Keeps the lines.
-/// Returns what keeps the shader from it, "" where nothing does: "reads gl_FrontFacing". What is left to be
-/// found out is whether the driver takes the text.
+/// Makes of `source`, which draws, a compute shader for gpu::dispatch_over(): gl_FragCoord becomes a
+/// variable, the outputs too, which are stored once main() has ended, unless that discarded the pixel. Keeps
+/// the lines. Returns what keeps the shader from it, "" where nothing does: "reads gl_FrontFacing". What is
+/// left to be found out is whether the driver takes the text.
 std::string to_compute_form(ShaderSource& source, const DrawShape& shape);
 
 }  // namespace aftershade

@@ -58,9 +58,9 @@ std::string param_sampler_glsl(const ParamSpec& spec, const ParamFile& file, int
 /// default and does not search.
 std::string param_table_glsl(const ParamSpec& spec, int binding, bool has_rows = true);
 
-/// Of a texture of 1 or 4 channels: r32f or rgba32f.
+/// The format of a texture with 1 or 4 channels: r32f or rgba32f.
 gpu::TextureFormat param_texture_format(int channels);
-/// What its type makes of a value. There must be a texture of that type: is_param_texture().
+/// The texels that its type makes of a value. There must be a texture of that type: is_param_texture().
 ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value);
 /// rgba32f. There must be a file. A 3-D LUT has blue for its layer, green its row; a 1-D one is laid out in
 /// rows of kLutRow.

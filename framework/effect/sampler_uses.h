@@ -17,7 +17,7 @@ namespace aftershade {
 struct SamplerType {
     std::string_view prefix, shape;
 };
-/// Of 2-D samplers and arrays of them.
+/// The type that the word names, for 2-D samplers and arrays of them.
 std::optional<SamplerType> sampler_type(std::string_view word);
 
 /// texelFetch(name, p, 0) or textureSize(name, 0), by places among the tokens.

@@ -36,7 +36,7 @@ inline constexpr int kCameraBinding = 3;
 inline constexpr int kPassBinding = 4;  ///< only in passes with `repeat`
 inline constexpr int kNativeBinding = 5;
 inline constexpr int kLightsBinding = 6;  ///< only of effects with "uses": ["lights"]
-/// Of glsl/host/tiles.vert: the block, and the storage block with the rectangles of tiles.
+/// Bindings of glsl/host/tiles.vert: the block, and the storage block with the rectangles of tiles.
 inline constexpr int kTilesBinding = 7;
 inline constexpr int kTileRunsBinding = 0;
 
@@ -100,7 +100,7 @@ struct PassBindings {
     bool has_param_block = false;
     bool has_pass_block = false;
     bool has_native_block = false;
-    /// Of a pass that lists tiles, or draws over them with a vertex shader of its own: the block of sizes
+    /// For a pass that lists tiles, or draws over them with a vertex shader of its own, the block of sizes
     /// ends with a vec4 `tile_grid_size`, how many texels of the tile list's grid the pass's target has, or
     /// what the list is of. Other draws over tiles have it in the block of glsl/host/tiles.vert.
     bool has_tile_grid = false;
@@ -109,14 +109,14 @@ struct PassBindings {
 /// Pointers are into the context's manifest.
 PassBindings pass_bindings(const ShaderContext& context);
 
-/// Of a draw of instances there are two shaders, of every other pass one.
+/// A draw of instances has two shaders, every other pass one.
 enum class ShaderFile { main, vertex };
 
 /// Where a pass's shader begins: the author's file, or the host's own where tiles are listed or drawn over.
 std::filesystem::path shader_path(const PassSpec& pass, ShaderFile file,
                                   const std::filesystem::path& glsl_folder);
 
-/// Of a texel as GLSL declares it: float, uint, vec2, uvec4.
+/// The type of a texel as GLSL declares it: float, uint, vec2, uvec4.
 std::string texel_type(gpu::TextureFormat format);
 
 /// Bounds of a shader with its includes. A driver's compiler does not give up by itself: Mesa 22.3.6 runs out

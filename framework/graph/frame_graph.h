@@ -121,10 +121,11 @@ struct Pass {
     Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
     Fusing fusing = Fusing::never;
-    /// Of a draw, or of instances that are tiles, whose program is a compute shader that stores the targets as
-    /// images: the unit of the first. -1: fragments draw them.
+    /// Unit of the first target, for a draw or for instances that are tiles, if their program is a compute
+    /// shader that stores the targets as images. -1: fragments draw them.
     int first_target_unit = -1;
-    std::string why_drawn{};  ///< why a compute shader cannot do that; "" where it does, or none was asked for
+    /// Why a compute shader cannot do that; "" where it does, or where none was requested.
+    std::string why_drawn{};
 
     bool computes() const { return kind == PassKind::compute || first_target_unit >= 0; }
 };

@@ -20,7 +20,7 @@ struct FrameResult;
 
 namespace aftershade::host {
 
-/// Of images of the caller's, and the most that HostLimits::max_side_px may be.
+/// Largest side of the caller's images, and the largest value of HostLimits::max_side_px.
 inline constexpr int kMaxSide_px = 65536;
 
 struct Image::Data {
@@ -47,7 +47,7 @@ struct Sequence::Data {
 class Access {
 public:
     static Image image(std::shared_ptr<const aftershade::Image> pixels);
-    /// Of an image with pixels.
+    /// The pixels of an image that has some.
     static const aftershade::Image& pixels(const Image& image) { return *image.data_->pixels; }
     /// Throws Error(usage) for one that was moved from.
     static Host::Data& host(const Host& host);

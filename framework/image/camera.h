@@ -51,7 +51,7 @@ public:
         values_[name] = value;
         origins_[name] = origin;
     }
-    /// Of a field that is known, or "lens_model".
+    /// Origin of a known field, or of "lens_model".
     std::string origin(const std::string& name) const;
     void set_lens_model(const std::string& name, const std::string& origin);
     const std::map<std::string, double>& values() const { return values_; }

@@ -18,7 +18,7 @@ struct ChannelStatistics {
     std::uint64_t negative = 0;  ///< below zero, -inf too, -0 not
 };
 
-/// Of each channel.
+/// Statistics of each channel.
 std::vector<ChannelStatistics> channel_statistics(const Image& image);
 
 /// A channel of a file, with its figures or why there are none.

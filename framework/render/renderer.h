@@ -79,7 +79,7 @@ public:
     FrameResult render_again(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// How many programs of the last graph the threads of RendererOptions compiled.
     int programs_compiled_ahead() const;
-    /// Of the last frame: how many of the pipeline's steps were drawn.
+    /// How many of the pipeline's steps the last frame drew.
     int steps_drawn() const { return steps_drawn_; }
     /// From the next frame on, which builds another graph if that changes.
     void set_telemetry(bool telemetry) {
@@ -100,7 +100,7 @@ public:
     /// Takes up where a run over the frames before this one ended. Throws Error(ErrorKind::usage) where the
     /// file is damaged or of another look, effect version, size or last frame: at once, or by render().
     void load_history(const std::filesystem::path& path);
-    /// Of a history that was loaded for a frame that could not be read.
+    /// Drops a history that was loaded for a frame that could not be read.
     void drop_loaded_history();
 
     /// The graph of the last frame in Graphviz's language; "" before the first.
@@ -109,7 +109,7 @@ public:
     std::vector<DrawnPass> draws() const;
     /// How often the graph was built.
     int graphs_built() const { return graphs_built_; }
-    /// Of the last frame: bytes of all textures and buffers, and what they would be without aliasing.
+    /// Bytes of all textures and buffers of the last frame, and their bytes without shared memory.
     std::pair<std::uint64_t, std::uint64_t> graph_bytes() const;
 
 private:

@@ -52,7 +52,7 @@ struct FrameFingerprint {
     std::string hash;         ///< of the setup, the frame's own inputs and `before`
     FingerprintParts inputs;  ///< by file name; "absent" for a file that would be read if it were there,
                               ///< "unreadable" for one that cannot be read
-    /// Of a look with history: the fingerprint of the frame before, or kBegin.
+    /// For a look with history: the fingerprint of the previous frame, or kBegin.
     std::string before;
     static constexpr const char* kBegin = "begin";
 };

@@ -56,14 +56,14 @@ public:
     glm::dvec3 shade(std::uint32_t id) const;
     static constexpr int kAlbedoPoints = 4;
 
-    /// Of one triangle.
+    /// The grid of one triangle.
     struct Grid {
         glm::dmat2 cells_from_px{1};
         glm::dvec2 low{0};  ///< of the grid, in cells
         glm::ivec2 size{1};
         std::uint32_t start = 0;  ///< the first id over 2
     };
-    /// Of each triangle of each object, in their order.
+    /// The grid of each triangle of each object, in their order.
     const std::vector<Grid>& grids() const { return grids_; }
     const SceneState& reference() const { return world_.state(); }
 

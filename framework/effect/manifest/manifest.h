@@ -208,7 +208,8 @@ struct TileListSpec {
     std::string module;            ///< that declares it; "" for the effect itself
     std::string doc;
     Place place;
-    /// Of a texture and of tiles whose side is known: its pass then has the same text in every effect.
+    /// Whether the list is of a texture and its tiles have a known side: its pass then has the same text in
+    /// every effect.
     bool has_common_text() const { return of && tile.param.empty(); }
     std::string runs() const { return name + "_runs"; }  ///< buffer: see glsl/tile_runs.glsl
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}

@@ -59,7 +59,7 @@ struct CompareOptions {
     int threads = 0;  ///< upper limit, from 0 to 1024; 0: as many as there are cores; changes no figure
 };
 
-/// Of the layer's largest difference; places are pixels of the files' data windows.
+/// The layer's largest difference; places are pixels of the files' data windows.
 struct LargestDifference {
     double value = 0;  ///< absolute; +infinity where the values cannot be subtracted
     int x = 0, y = 0;

@@ -57,7 +57,7 @@ public:
     /// Every fault and every warning of a document that was being read, at least one, in the order found.
     const std::vector<Diagnostic>& diagnostics() const noexcept;
 
-    // Of the first diagnostic that is an error.
+    // Message and place of the first diagnostic that is an error.
     const std::string& message() const noexcept;
     const std::string& file() const noexcept;
     int line() const noexcept;

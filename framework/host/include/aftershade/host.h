@@ -56,7 +56,7 @@ AFTERSHADE_API const char* backend_name(Backend backend) noexcept;
 
 struct HostLimits {
     int max_side_px = 16384;  ///< of images that are read; from 1 to 65536; beyond: Error(capture)
-    /// Of the channels of one file that are read; at least 1; beyond: Error(capture).
+    /// Bytes of the channels that are read from one file; at least 1; above that: Error(capture).
     std::uint64_t max_image_bytes = 512ull * 1024 * 1024;
 };
 

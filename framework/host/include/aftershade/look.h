@@ -141,8 +141,9 @@ public:
     /// Renders the next frame. After an error the session continues with the next frame. Throws as
     /// Look::render.
     Result render(const Capture& capture, const RenderOptions& options = {});
-    /// Of a frame that consists of `count` captures (sub-frames, for effects that accumulate them) the
-    /// `index`-th, from 0; each in turn, all with the frame's number. The result of the last has the images.
+    /// Renders the `index`-th capture, from 0, of a frame that consists of `count` captures (sub-frames, for
+    /// effects that accumulate them). Call it for each in turn, all with the frame's number. The last result
+    /// has the images.
     Result render_subframe(const Capture& capture, int index, int count, const RenderOptions& options = {});
     /// Reads what the look needs of a frame, with its sub-frames, neighbours, cuts and frame rate, and
     /// renders it, as `aftershade run` does; the frame behind it is read at the same time. Options that the
@@ -179,8 +180,8 @@ struct LookParam {
 struct LookOptions {
     std::vector<std::string> taps{};           ///< "step.texture": intermediates that each result has too
     std::map<std::string, Value> variables{};  ///< above the look's own "vars"
-    /// Of a look that is given as text: the folder that its files are named from; empty: the working
-    /// directory. What messages call the text.
+    /// For a look that is given as text: the folder that its files are relative to (empty: the working
+    /// directory), and the text's name in messages.
     std::filesystem::path folder{};
     std::string name = "look text";
 };
