@@ -51,9 +51,9 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->capture_default_str();
     app.add_option(
            "--transparency", options.transparency,
-           "Materials with an opacity below 1: stochastic (a sample shows one of the surfaces that it "
-           "crosses, by chance), lists (memoised: blend all, out of a list for each pixel), or sorted "
-           "(supersampled, accumulation: blend all)")
+           "Materials with an opacity below 1: stochastic (a sample shows a random one of its surfaces), "
+           "lists (memoised: blend all, by a list for each pixel), or sorted (supersampled, accumulation: "
+           "blend all)")
         ->check(CLI::IsMember({"stochastic", "lists", "sorted"}))
         ->capture_default_str();
     app.add_option("--list-nodes", settings.transparency.list_nodes,
