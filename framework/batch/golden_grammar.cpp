@@ -78,13 +78,13 @@ Form objects() {
 /// Where something else holds.
 std::vector<Key> place_keys() {
     const Form corner = grammar::integer(-kMaxAreaSide_px, kMaxAreaSide_px);
-    return {
-        optional("rectangle", grammar::list(corner, {.min = 4, .max = 4}),
-                 "x, y, width and height in px of the display window."),
-        optional("mask", text({.min_length = 1, .type = "path from the document's folder"}),
-                 "Picture over the display window: the pixels above a half."),
-        optional("channel", text({.min_length = 1}), "Channel of the mask; default: its only one."),
-        optional("object", objects(), "Objects of the case's capture: the pixels that they cover, even in part.")};
+    return {optional("rectangle", grammar::list(corner, {.min = 4, .max = 4}),
+                     "x, y, width and height in px of the display window."),
+            optional("mask", text({.min_length = 1, .type = "path from the document's folder"}),
+                     "Picture over the display window: the pixels above a half."),
+            optional("channel", text({.min_length = 1}), "Channel of the mask; default: its only one."),
+            optional("object", objects(),
+                     "Objects of the case's capture: the pixels that they cover, even in part.")};
 }
 
 std::vector<grammar::Rule> place_rules() {

@@ -353,9 +353,10 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
     };
     if (job.folder.empty()) fault(Option::output, "names no folder");
     if (!numbers_fit(job))
-        fault(Option::subframes, fmt::format("file numbers are {} times the frame's number and exceed {}, the largest "
-                                             "that a capture can have; choose lower frames",
-                                             job.subframes, kMaxFileNumber));
+        fault(Option::subframes,
+              fmt::format("file numbers are {} times the frame's number and exceed {}, the largest "
+                          "that a capture can have; choose lower frames",
+                          job.subframes, kMaxFileNumber));
     if (const std::uint64_t bytes = bytes_of_job(job); bytes > kMaxJobBytes)
         fault(job.texture_object >= 0 ? Option::texture_size : Option::size,
               fmt::format("rendering needs about {:.1f} GiB of memory; the limit is {:.0f} GiB (render fewer "
