@@ -46,7 +46,7 @@ std::string input_flags(const InputSpec& input) {
     if (input.history) flags += ", with the frame before";
     if (input.layer >= 0) flags += ", of layer " + std::to_string(input.layer);
     if (input.from_capture) flags += ", the capture's own";
-    if (!input.instead.empty()) flags += " where there is " + input.instead;
+    if (!input.instead.empty()) flags += " if there is " + input.instead;
     if (input.frame == -1) flags += ", of the frame before";
     if (input.frame == 1) flags += ", of the next frame";
     if (std::abs(input.frame) > 1)

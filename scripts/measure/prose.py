@@ -32,6 +32,9 @@ RULES = [
     ("'before it', 'behind it' in place of else: put the condition first", r"; before it\b"),
     ("verb before its subject", r"^(In|On|At|Behind|Beside|Below|Above|There|Here|Then) (?:\w+ ){0,5}(stands?|lies?|goe?s?|comes?) "
      r"(?!(in|to|from|first|last|by|before|after|outside|below|above|beside|within)\b)"),
+    ("'what' after a preposition: name the thing", r"\b(in|of|from|behind|by|over|under|with|for|to|at|beside|through) what\b"),
+    ("'whatever': write for any, or of any", r"\bwhatever\b"),
+    ("'where there is': write if", r"\bwhere there (is|are)\b"),
     ("'held to', 'held against': write compared with", r"\bheld (to|against)\b"),
     ("'nothing but': write only", r"\bnothing but\b"),
     ("'hangs on': write depends on", r"\b(hangs?|hung) on\b"),
