@@ -114,7 +114,7 @@ public:
     /// Every effect, sorted by id; manifests are read from disk each time. Throws Error(document) with every
     /// fault of every manifest; with `faults`, these go there, and their effects are left out.
     std::vector<EffectInfo> effects(std::vector<Diagnostic>* faults = nullptr) const;
-    /// One of them. Throws Error(usage) where there is none, Error(document) for faults of its manifest.
+    /// One of them. Throws Error(usage) for an unknown id, Error(document) for faults of its manifest.
     EffectInfo effect(const std::string& id) const;
     std::vector<NameAndSummary> profiles() const;  ///< of producers of captures, sorted
 
