@@ -1,5 +1,5 @@
-// What `run` prints for a person or a program while it works and at the end. All on stderr; stdout holds the
-// paths of the files written, one a line.
+// Messages of `run` for people or programs, while it works and at the end. All go to stderr; stdout has the
+// paths of the written files, one a line.
 #pragma once
 
 #include <chrono>

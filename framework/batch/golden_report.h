@@ -1,4 +1,4 @@
-// What a golden suite found: for people as ctest prints it, JUnit for CI, JSON for pages.
+// The results of a golden suite: text in the manner of ctest, JUnit for CI, JSON for pages.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

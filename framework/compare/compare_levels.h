@@ -1,4 +1,4 @@
-// What a layer, or an area of it, is held to.
+// The limits of a layer, or of an area of it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What is compared with what: the channels of a picture file in layers, each with a role that says how.
+// The layers of a picture file: channels that are compared together, by a role.
 #pragma once
 
 #include <optional>

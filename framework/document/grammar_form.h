@@ -1,4 +1,4 @@
-// What forms and rules of a grammar are made of; for the sources that define them. grammar.h declares
+// The base of a grammar's forms and rules, for the sources that define them. grammar.h declares
 // the forms and rules themselves.
 #pragma once
 

@@ -1,6 +1,6 @@
-// What a parameter's type is: all that differs between types, in one table entry each. A new type is a file
-// like those of framework/document/param_types and a line in the list of core_param_types() or, where it
-// needs more than core, of framework/effect/param_types.cpp.
+// The type of a parameter: one table entry has everything that differs between types. A new type is a file
+// like those of framework/document/param_types and a line in the list of core_param_types(). A type that
+// needs more than core has its line in framework/effect/param_types.cpp.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
-// What the text of a shader does with its samplers: which it only fetches single texels of, through the
-// functions and the macros that it hands them to.
+// The use of samplers in the text of a shader: those from which it only fetches single texels, including
+// through functions and macros.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What a shader uses of what a manifest declares, by its words. Internal to framework/effect.
+// The declared names that a shader uses, by its words. Internal to framework/effect.
 #pragma once
 
 #include <map>

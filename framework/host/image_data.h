@@ -1,4 +1,4 @@
-// What the API's images and captures hold.
+// The data of the API's images and captures.
 #pragma once
 
 #include <filesystem>

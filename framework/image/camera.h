@@ -1,4 +1,4 @@
-// What is known of a capture's camera: lens and sensor as numbers, and where it stands.
+// The known values of a capture's camera: lens, sensor and position.
 #pragma once
 
 #include <array>

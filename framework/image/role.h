@@ -1,4 +1,5 @@
-// What an image means. One table serves reading, wiring, filtering rules and writing (docs/conventions.md).
+// Roles: the meanings of images. One table serves reading, wiring, filtering rules and writing
+// (docs/conventions.md).
 #pragma once
 
 #include <array>

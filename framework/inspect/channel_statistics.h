@@ -1,4 +1,4 @@
-// What the stored values of a channel are, for people who look for the fault in a capture.
+// Statistics of a channel's stored values, for people who look for the fault in a capture.
 #pragma once
 
 #include <cstdint>

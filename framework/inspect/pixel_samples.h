@@ -1,4 +1,4 @@
-// What files store at one pixel, and how many samples deep pixels have.
+// Stored values at one pixel, and the numbers of samples of deep pixels.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What is known of a capture's motion vectors: the claim of its profile, its rivals, the verdict.
+// The check of a capture's motion vectors: the profile's claim, its rivals, the verdict.
 #pragma once
 
 #include <array>

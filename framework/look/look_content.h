@@ -1,4 +1,4 @@
-// What a look's effects and values are made of, as text to be hashed.
+// The content of a look's effects and values, as text to be hashed.
 #pragma once
 
 #include <filesystem>

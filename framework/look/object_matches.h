@@ -1,6 +1,5 @@
-// What of a look met nothing in the frames: objects that it names and no frame has had, steps that work on
-// all objects although few are likely meant, and scattering too narrow to be seen. Nothing else would show
-// it.
+// Silent misses of a look: objects that it names and no frame contains, steps that work on all objects
+// although few are likely meant, and scattering too narrow to be visible. No other check reports them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the pixels of a region depend on: found backwards, from what a look outputs to the capture.
+// The pixels that a region depends on, found backwards from a look's outputs to the capture.
 #pragma once
 
 #include <optional>

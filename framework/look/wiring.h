@@ -1,4 +1,5 @@
-// What a look's "in" gives to an input: a role of the capture, or an output or a texture of an earlier step.
+// The source of an input in a look's "in": a role of the capture, or an output or a texture of an earlier
+// step.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What a frame graph was built from: everything that its build asked of a frame, with the answers.
+// The key of a frame graph: every fact about a frame that its build read.
 #pragma once
 
 #include <compare>

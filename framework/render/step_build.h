@@ -1,4 +1,4 @@
-// What one step has while GraphBuilder adds its passes.
+// The state of one step while GraphBuilder adds its passes.
 #pragma once
 
 #include <map>

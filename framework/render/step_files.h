@@ -1,4 +1,4 @@
-// What parameters and masks bring from files.
+// Images and tables that parameters and masks read from files.
 #pragma once
 
 #include <filesystem>

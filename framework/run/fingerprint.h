@@ -1,4 +1,4 @@
-// What the pixels of an output frame depend on, as one hash: equal fingerprints, equal pixels.
+// A hash of everything that an output frame's pixels depend on: equal fingerprints mean equal pixels.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// What runs have written into a folder: one line of JSON for each finished frame, so that a later run can
-// leave out what is current.
+// The journal of a folder: one line of JSON for each finished frame, so that a later run can leave out
+// current frames.
 #pragma once
 
 #include <cstdint>

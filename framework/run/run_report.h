@@ -1,4 +1,4 @@
-// What a run reports: while it works, and at its end.
+// Reports of a run, while it works and at its end.
 #pragma once
 
 #include <cstdint>

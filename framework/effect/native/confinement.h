@@ -1,4 +1,4 @@
-// What the kernel keeps untrusted native code from: Landlock, seccomp and limits, where it has them.
+// Confines untrusted native code by the kernel: Landlock, seccomp and limits, if it has them.
 #pragma once
 
 #include <cstdint>

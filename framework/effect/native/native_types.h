@@ -1,4 +1,4 @@
-// What goes into native code and comes out of it.
+// Inputs and outputs of native code.
 #pragma once
 
 #include <cstddef>

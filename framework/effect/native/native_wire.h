@@ -1,4 +1,4 @@
-// What goes to native code in a process of its own, and what comes back, as bytes: internal to
+// Messages to and from native code in a separate process, as bytes. Internal to
 // framework/effect.
 #pragma once
 
