@@ -55,7 +55,7 @@ public:
 
     RunObserver observer();
     void print_summary(const RunReport& report);
-    /// Whatever the style.
+    /// In any style.
     void warn(const std::string& message);
 
 private:

@@ -15,7 +15,7 @@ bool is_snake_case(std::string_view name);
 /// What an error says of a name that is not: "<thing> 'Name' " and this.
 inline constexpr const char* kMustBeSnakeCase = "must be snake_case: a-z, 0-9 and _, beginning with a letter";
 
-/// A-Z as a-z; every other byte as it is, whatever the locale.
+/// A-Z as a-z; every other byte unchanged, in any locale.
 std::string lower_case(std::string_view text);
 
 /// Without the spaces at its ends.

@@ -23,7 +23,7 @@ enum class FarmHistory {
 struct FarmJob {
     std::string name;  ///< a DNS label (RFC 1123), which every farm accepts
     std::string program;
-    /// What follows the program's path: "run", the look, the capture, outputs and options, but for the part
+    /// Arguments after the program's path: "run", the look, the capture, outputs and options, except the part
     /// of the frames, the history and the report.
     std::vector<std::string> arguments;
     std::filesystem::path working_folder;              ///< of the tasks; absolute

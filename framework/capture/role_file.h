@@ -1,4 +1,4 @@
-// Roles in files of their own, held against the file of the colour.
+// Roles in files of their own, checked against the file of the colour.
 #pragma once
 
 #include <string>

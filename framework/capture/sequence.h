@@ -79,7 +79,7 @@ std::optional<std::filesystem::path> capture_document(const std::string& argumen
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics);
 
 /// Every file that reading the sequence may open, whether it is there or not: those of its frames with their
-/// sub-frames, roles and neighbours, and whatever else fits its patterns on disk.
+/// sub-frames, roles and neighbours, and any other file on disk that matches its patterns.
 std::vector<std::filesystem::path> files_of_sequence(const Sequence& sequence);
 
 /// Adds "depth=z.####.exr" of Option::role.

@@ -44,7 +44,7 @@ inline constexpr int kLutRow = 4096;
 ///     image   sampler2D stain, stain_size       vec4(w, h, 1/w, 1/h); HAS_STAIN
 ///     lut     vec3 grade(vec3 rgb)              clamped to its domain, tetrahedral; HAS_GRADE
 ///
-/// "" for a file parameter without a file. Of a LUT the text holds size, dimension and domain, so that it
+/// "" for a file parameter without a file. For a LUT the text has size, dimension and domain, so that it
 /// differs between LUTs of different shape.
 std::string param_sampler_glsl(const ParamSpec& spec, const ParamFile& file, int binding);
 

@@ -194,7 +194,7 @@ struct PassBlock {
     std::int32_t padding[2] = {0, 0};
 };
 
-/// The block `frame`; the same for every pass of a frame but for `step_seed`.
+/// The block `frame`; the same for every pass of a frame except `step_seed`.
 struct FrameBlock {
     std::int32_t display_size_px[2] = {0, 0};  ///< of the display window, at the rendered scale
     std::int32_t origin_px[2] = {0, 0};  ///< display-window pixel of texel (0, 0), at the rendered scale

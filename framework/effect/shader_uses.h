@@ -27,7 +27,7 @@ struct ShaderUses {
     Uses outputs;   ///< x of out_x, but for names that the shader declares itself
     Words written;  ///< out_x that a statement assigns to, or that a call or a macro may
     Uses unset;     ///< variables of functions that are read, but to which nothing is assigned
-    /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., but for parameters of functions.
+    /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., except parameters of functions.
     Uses samplers;
     Uses plain_samplers;          ///< those outside of every #if: what stands within may be left out
     Uses sizes;                   ///< x of x_size, but for names of the shader's own

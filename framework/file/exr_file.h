@@ -89,9 +89,9 @@ struct ExrRequest {
 /// Whether it is a file that begins as OpenEXR files do.
 bool is_exr_file(const std::filesystem::path& path);
 
-/// An open file. Headers are read and held against the limits on construction; nothing larger than a header
-/// is allocated before. Every failure is Error(ErrorKind::capture) that begins with the path. [one thread at
-/// a time]
+/// An open file. The constructor reads headers and checks them against the limits; it allocates nothing
+/// larger than a header before. Every failure is Error(ErrorKind::capture) that begins with the path. [one
+/// thread at a time]
 class ExrFile {
 public:
     explicit ExrFile(const std::filesystem::path& path, const ReadLimits& limits = {});
@@ -118,9 +118,9 @@ public:
     /// the reads, which report it; so is a request that shares a channel with one before it.
     void prefetch(std::span<const ExrRequest> requests) const;
     /// The samples of the named channels of a deep part (of level 0 where tiled); half becomes float, uint
-    /// stays. Sample counts are read first, and held against the limits before there is memory for the
-    /// samples; without channels they are all that is read. Flat parts, incomplete files and channels that do
-    /// not exist are errors.
+    /// stays. Sample counts are read first, and checked against the limits before memory for the samples is
+    /// allocated; without channels only the counts are read. Flat parts, incomplete files and channels that
+    /// do not exist are errors.
     DeepImage read_deep(int part, std::span<const std::string> channels) const;
     /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile
     /// converts it, to half precision.

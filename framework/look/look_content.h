@@ -20,7 +20,7 @@ std::vector<std::filesystem::path> files_of_pipeline(const Pipeline& pipeline,
 std::string content_of_values(const PipelineStep& step);
 
 /// The manifest, its modules' manifests, native sources, and every shader with what it includes: each file's
-/// name and bytes, whatever folder it lies in. Throws Error(ErrorKind::usage) for a file that cannot be read.
+/// name and bytes, in any folder. Throws Error(ErrorKind::usage) for a file that cannot be read.
 std::string content_of_effect(const EffectManifest& manifest, const std::filesystem::path& glsl_folder);
 
 }  // namespace aftershade

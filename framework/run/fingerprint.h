@@ -42,8 +42,8 @@ struct FingerprintSource {
 };
 
 /// The program's version, the renderer, the look's documents, the values of its steps, the files that these
-/// name, its effects and plug-ins by content, the options of outputs that change pixels, capture.json but for
-/// what only says which frames there are, profiles, and what the first frame decides. Throws
+/// name, its effects and plug-ins by content, the options of outputs that change pixels, capture.json except
+/// its list of frames, profiles, and the decisions by the first frame. Throws
 /// Error(ErrorKind::usage) for a file that cannot be read.
 FingerprintParts setup_parts(const FingerprintSource& source, const CaptureReader& reader);
 

@@ -1,6 +1,6 @@
 // Makes captures of a scene, and the pictures that effects approximate: by rays, in double precision, on the
-// CPU. Nothing of it depends on the GL that effects run on, and the same scene gives the same bits whatever
-// the threads.
+// CPU. It does not depend on the GL that effects run on, and the same scene gives the same bits for any
+// number of threads.
 #pragma once
 
 #include <array>
@@ -54,9 +54,9 @@ public:
     /// `scene` must outlive this. Pixels are square, and the sensor is as wide as the picture.
     SceneRenderer(const Scene& scene, int width_px, int height_px, int threads);
 
-    /// Every role but mask, at `time` in frames; motion is to `time` minus and plus one frame, in the shot of
-    /// `frame`. Where the first surface is transparent, color has what shines through as well; the other
-    /// roles are of that surface. `jitter_px` is the samples' offset from the pixels' centres, +y down.
+    /// Every role except mask, at `time` in frames; motion is to `time` minus and plus one frame, in the shot
+    /// of `frame`. Where the first surface is transparent, color includes the light that shines through; the
+    /// other roles are of that surface. `jitter_px` is the samples' offset from the pixels' centres, +y down.
     Capture render_capture(int frame, double time, std::array<double, 2> jitter_px = {0, 0}) const;
     Capture render_capture(int frame) const { return render_capture(frame, frame); }
 
@@ -79,7 +79,7 @@ public:
     /// in their order.
     void for_each_sample(int frame, const TruthSettings& settings, const SampleVisitor& visit) const;
 
-    /// RGBA. Of the shutter, sample i of n is the middle of part i of the exposure, or for interleaved
+    /// RGBA. For the shutter, sample i of n is the middle of part i of the exposure, or for interleaved
     /// samples one of 16 moments in that part; lens and pixel are multi-jittered. Without `antialias` rays go
     /// through the pixels' centres, moved by `jitter_px`.
     Image render_truth(int frame, const TruthSettings& settings) const;

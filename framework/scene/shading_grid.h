@@ -46,7 +46,7 @@ public:
     ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings);
 
     std::uint32_t id_count() const { return id_count_; }
-    /// The id of a point that a ray met, at whatever time.
+    /// The id of a point that a ray hit, at any time.
     std::uint32_t id_of(const Surface& surface) const;
     /// The cell's centre, drawn into the triangle.
     ShadingPlace place_of(std::uint32_t id) const;

@@ -55,7 +55,7 @@ public:
     NativeOutput(const NativeOutput&) = delete;
     NativeOutput& operator=(const NativeOutput&) = delete;
     const aftershade_output* get() const { return &output_; }
-    /// Adds a fault for whatever is declared and was not set.
+    /// Adds a fault for each declared value that was not set.
     void require_everything();
     NativeResult take() { return std::move(result_); }
 
