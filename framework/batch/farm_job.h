@@ -13,7 +13,7 @@
 
 namespace aftershade {
 
-/// What a task that begins within a shot gets from the frames before it.
+/// The history of a task that begins within a shot.
 enum class FarmHistory {
     none,    ///< nothing: the look has no history, or restarts it
     warmup,  ///< what a few frames rendered before the part leave

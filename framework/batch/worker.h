@@ -16,8 +16,8 @@
 
 namespace aftershade {
 
-/// What a worker says while it runs; each may be empty. Called on the thread that runs run_worker. A line has
-/// no line end; one above 64 KiB comes in pieces.
+/// Messages of a worker while it runs; each may be empty. Called on the thread that runs run_worker. A line
+/// has no line end; one above 64 KiB comes in pieces.
 struct WorkerListener {
     std::function<void(std::string_view line)> on_stdout;
     std::function<void(std::string_view line)> on_stderr;

@@ -80,7 +80,7 @@ struct Capture {
     std::map<std::string, NonFinitePixels> non_finite;
 };
 
-/// What else would give a role that a frame lacks.
+/// Other sources of a role that a frame lacks.
 struct RoleElsewhere {
     std::vector<std::string> profiles;  ///< ids
     std::vector<std::string> layers;
@@ -111,8 +111,8 @@ public:
     /// The same decision as that of a reader of this capture, without reading it again. Call before anything
     /// is read.
     void share_first_of(const CaptureReader& other) { first_ = other.first_; }
-    /// What the first frame decides of these roles and of all pictures, as text that changes with it; ""
-    /// where there is but one frame.
+    /// The first frame's decisions on these roles and on all pictures, as text that changes with them; ""
+    /// for a single frame.
     std::string decision(std::span<const std::string> roles) const;
     /// Whether the frame's main file is there.
     bool has_frame(int frame) const;

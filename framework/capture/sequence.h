@@ -85,7 +85,7 @@ std::vector<std::filesystem::path> files_of_sequence(const Sequence& sequence);
 /// Adds "depth=z.####.exr" of Option::role.
 void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics);
 
-/// What a list of frames leaves out between its first and its last.
+/// Frames that a list leaves out between its first and its last.
 struct FrameGaps {
     int step = 1;              ///< of three frames or more: the largest that reaches each of them
     std::int64_t count = 0;    ///< of frames that are missing at this step

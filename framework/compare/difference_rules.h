@@ -7,7 +7,7 @@
 
 namespace aftershade {
 
-/// What differences a comparison forgives; at most one of the two. Forgiveness (forgiveness.h) defines both.
+/// Differences that a comparison forgives; at most one of the two. Forgiveness (forgiveness.h) defines both.
 struct Forgive {
     static constexpr int kMaxShift_px = 64;
     static constexpr double kMaxBlur_px = 32;

@@ -14,7 +14,7 @@
 
 namespace aftershade {
 
-/// What the values of a file's layers do not say.
+/// Properties of a file besides the values of its layers.
 struct FileTraits {
     std::string colors;  ///< what the numbers of colours mean: "sRGB", "rec709"
     float pixel_aspect = 1;

@@ -75,7 +75,7 @@ class RuleType {
 public:
     virtual ~RuleType() = default;
     virtual void check(const Node& node, const std::string& thing, Diagnostics& diagnostics) const = 0;
-    /// What is put into the schema of the object.
+    /// The part for the schema of the object.
     virtual schema::json schema(SchemaScope& scope) const = 0;
     virtual std::string sentence() const = 0;  ///< "" for none
 };

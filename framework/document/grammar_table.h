@@ -10,8 +10,8 @@
 
 namespace aftershade::grammar {
 
-/// The keys of one block, those of all its kinds too; a column that says nothing is left out. What its rules
-/// say stands below. Ends in a line break; "" for a block without keys.
+/// The keys of one block, those of all its kinds too; an empty column is left out. The text of its rules
+/// follows. Ends in a line break; "" for a block without keys.
 std::string table_of(const Block& block);
 /// A table of the keys of one kind of the block alone.
 std::string table_of_kind(const Block& kind);

@@ -68,7 +68,7 @@ struct TableValue {
     bool operator==(const TableValue&) const = default;
 };
 
-/// What a value holds that only its type's own module defines. Immutable, since values share it.
+/// The part of a value that only its type's own module defines. Immutable, since values share it.
 /// [thread-safe]
 class ValueContent {
 public:
@@ -96,7 +96,7 @@ private:
 using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue,
                                 TableValue, OpaqueValue>;
 
-/// What a file parameter names: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
+/// The file of a file parameter: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
 enum class FileKind { image, lut };
 
 /// "requires": ["> focal_length"]: how this value stands to another parameter's, units minded.
@@ -168,8 +168,8 @@ struct SweepValue {
 std::vector<SweepValue> sweep_values(const ParamSpec& spec);
 
 /// Reads one entry of a manifest's "params", which is of one of `types`; check() has found it sound by
-/// param_block() (param_grammar.h). nullopt after a fault that leaves nothing usable. What `requires` names
-/// is checked by check_relation_declarations, once all parameters are known.
+/// param_block() (param_grammar.h). nullopt after a fault that leaves nothing usable.
+/// check_relation_declarations checks the names in `requires`, once all parameters are known.
 std::optional<ParamSpec> read_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
                                          std::span<const ParamType> types);
 /// The same with the check.

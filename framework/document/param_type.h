@@ -125,7 +125,7 @@ struct ParamTypeTraits {
     std::string (*defines)(const ParamSpec& spec, const ParamValue& value) = nullptr;
     /// How far light goes that moves as the value says, mm; null: it says nothing of that.
     double (*length_mm)(const ParamValue& value) = nullptr;
-    /// What the value has from files that documents name; null: nothing.
+    /// The content that the value takes from files that documents name; null: none.
     std::string (*content)(const ParamValue& value) = nullptr;
 };
 

@@ -37,7 +37,7 @@ void define_variable(json& definitions);
 /// A literal of the parameter's type. With variables, one may stand for it and for any part of it.
 json literal(const ParamSpec& spec, Variables variables = Variables::no);
 
-/// What the literals of one document's kind are made of.
+/// The pieces of literals in one kind of document.
 class LiteralParts {
 public:
     explicit LiteralParts(Variables variables) : variables_(variables) {}
