@@ -39,7 +39,7 @@ GoldenEnvironment environment_of(const gpu::ContextInfo& info);
 /// backend, renderer, version, mesa, llvm, cpu, instructions, software.
 nlohmann::ordered_json json_of(const GoldenEnvironment& environment);
 
-/// The sources of a picture; "" if one is unknown.
+/// Hashes of a picture's sources; "" for an unknown one.
 struct GoldenSources {
     std::string look;     ///< hash of the look, its effects and plug-ins (look_hash.h)
     std::string capture;  ///< hash of the capture's files and profiles (capture_hash.h)

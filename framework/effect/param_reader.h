@@ -10,9 +10,9 @@
 
 namespace aftershade {
 
-/// What may be read of a parameter's value: all of it, or of one that reaches shaders through a texture or a
-/// storage block only what decides sizes and text. Contents of tables, curves and profiles change without a
-/// new graph.
+/// The readable part of a parameter's value: all of it. For a value that reaches shaders through a texture or
+/// a storage block, only the part that decides sizes and text. Contents of tables, curves and profiles change
+/// without a new graph.
 enum class ParamAspect {
     value,
     table_entries,  ///< int: entries of its table

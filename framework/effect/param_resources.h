@@ -26,7 +26,7 @@ struct ParamTexture {
     std::vector<float> texels;  ///< layer after layer, rows from the top, channels interleaved
 };
 
-/// What a file parameter's path holds; nothing for "".
+/// The content of a file parameter's path; none for "".
 using ParamFile = std::variant<std::monostate, Image, Lut>;
 
 /// Reads the file of a file parameter; "" is none. Relative paths are the caller's to resolve. nullopt after

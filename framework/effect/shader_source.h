@@ -70,14 +70,14 @@ private:
     std::map<std::string, File> files_;
 };
 
-/// What one pass sees, resolved for one set of parameters and inputs.
+/// The inputs of one pass, resolved for one set of parameters and inputs.
 struct ShaderContext {
     const EffectManifest* manifest = nullptr;
     const PassSpec* pass = nullptr;
     ParamReader params;                       ///< define-bound values become preprocessor symbols
     std::vector<std::string> present_inputs;  ///< optional inputs that the frame has
     std::filesystem::path glsl_folder;
-    /// What the paths of file parameters hold, by parameter; nullptr or no entry: none has a file.
+    /// The content of file parameters, by parameter; nullptr or no entry: none has a file.
     const std::map<std::string, ParamFile>* files = nullptr;
     const FusedPart* part = nullptr;  ///< nullptr: the pass is a program by itself
     ShaderTexts* texts = nullptr;     ///< of several passes; nullptr: reads the pass's files itself
@@ -134,7 +134,7 @@ struct ShaderInclude {
     bool is_shared = false;  ///< in <>, else in quotation marks
 };
 
-/// What a line of a shader includes; nullopt for every other line.
+/// The file that a line of a shader includes; nullopt for every other line.
 std::optional<ShaderInclude> parse_include(std::string_view line);
 
 /// Faults (a missing include, a shader that does not begin as it must) go to `diagnostics`.
@@ -150,7 +150,7 @@ ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass,
 /// The texture of a pass that lists tiles by it, where TileListSpec::has_common_text().
 inline const std::string kListedSampler = "listed";
 
-/// What `#include <pass>` stands for; a vertex shader's has no outputs.
+/// The text of `#include <pass>`; a vertex shader's has no outputs.
 std::string interface_glsl(const ShaderContext& context, ShaderFile file = ShaderFile::main);
 
 /// The reads of a pass that are there: textures and inputs that are present, where their conditions hold.

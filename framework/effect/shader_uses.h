@@ -13,7 +13,7 @@
 
 namespace aftershade {
 
-/// What a target's name in GLSL begins with.
+/// The prefix of a target's name in GLSL.
 inline constexpr std::string_view kOut = "out_";
 
 struct ShaderUses {

@@ -20,7 +20,7 @@
 
 namespace aftershade {
 
-/// What a reader accepts before it allocates anything.
+/// Limits of a reader, which it checks before it allocates memory.
 struct ReadLimits {
     int max_side_px = 16384;  ///< of the data and the display window
     std::uint64_t max_image_bytes =
@@ -78,7 +78,7 @@ struct ExrPart {
     std::map<std::string, std::string> other_names;
 };
 
-/// What one call of read_floats or read_uints requests.
+/// A request of one call of read_floats or read_uints.
 struct ExrRequest {
     int part = 0;
     std::vector<std::string> channels;
@@ -170,7 +170,7 @@ std::vector<HalfOverflow> write_exr(const std::filesystem::path& path,
 void write_deep_exr(const std::filesystem::path& path, const DeepImage& image,
                     const ExrWriteOptions& options);
 
-/// What ExrWriteOptions::compression may be: what the OpenEXR of this build has, from "none" and "rle" to
+/// Values of ExrWriteOptions::compression: those of this build's OpenEXR, from "none" and "rle" to
 /// "dwab"; from 3.4 on also "htj2k256" and "htj2k32", from 3.5 on "lj2k" and "zstd".
 const std::vector<std::string>& exr_compression_names();
 
@@ -180,7 +180,7 @@ std::optional<int> exr_compression_level(std::string_view text);
 /// Whether a compression may change values: b44, b44a, dwaa, dwab, lj2k, and pxr24, which shortens floats.
 bool is_lossy_compression(std::string_view name);
 
-/// What to do with a file of deep data: "flatten it: oiiotool IN --flatten -o OUT.exr".
+/// The remedy for a file of deep data: "flatten it: oiiotool IN --flatten -o OUT.exr".
 std::string exr_flatten_remedy(const std::filesystem::path& path);
 
 /// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.

@@ -109,7 +109,7 @@ private:
     std::uint64_t position_ = 0;
 };
 
-/// What the header of a file says before the library has allocated anything for it.
+/// The header of a file, read before the library allocates memory for the file.
 struct FileLayout {
     bool multi_part = false;
     std::vector<Imf::Header> headers;
@@ -176,7 +176,7 @@ std::string block_label(const Imf::Header& header, std::uint64_t index);
 void require_no_missing_block(const std::filesystem::path& path, const Imf::Header& header,
                               std::span<const std::uint64_t> offsets);
 
-/// What every file begins with.
+/// The first bytes of every file.
 inline constexpr std::string_view kMagic = "\x76\x2f\x31\x01";
 
 ExrPart describe_part(const Imf::Header& header);

@@ -7,7 +7,7 @@
 
 namespace aftershade {
 
-/// What a PNG's numbers mean. OpenEXR files are linear, and are read as they are.
+/// The meaning of a PNG's numbers. OpenEXR files are linear, and are read unchanged.
 enum class PictureSpace { srgb, data };
 
 /// An OpenEXR or PNG file, recognised by its first bytes, as RGBA floats. OpenEXR: channels R, G, B and A of

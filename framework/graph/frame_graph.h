@@ -76,7 +76,7 @@ constexpr bool runs_program(PassKind kind) {
     return kind != PassKind::clear && kind != PassKind::copy;
 }
 
-/// What `instances` draws: `count` times four vertices of a strip (quads) or one point; or as many as the
+/// The size of `instances`: `count` times four vertices of a strip (quads) or one point; or as many as the
 /// buffer says (DrawArraysIndirectCommand).
 struct Instances {
     gpu::Primitive primitive = gpu::Primitive::quads;
@@ -130,8 +130,8 @@ struct Pass {
     bool computes() const { return kind == PassKind::compute || first_target_unit >= 0; }
 };
 
-/// What a pass made: new versions of what it wrote. A texture that a pass writes in several places (two
-/// layers, say) becomes one new version.
+/// The results of a pass: new versions of the resources that it wrote. A texture that a pass writes in
+/// several places (two layers, say) becomes one new version.
 struct Written {
     std::vector<TextureHandle> targets{};  ///< one for each of Pass::targets
     std::vector<TextureHandle> images{};   ///< one for each of Pass::images; as it was where that only reads
@@ -149,8 +149,8 @@ struct BufferDesc {
     bool operator==(const BufferDesc&) const = default;
 };
 
-/// What survives into the next frame: `current` is written, and becomes `previous` when the frame ends.
-/// Where no pass writes `current` in a frame, `previous` stays as it was.
+/// A resource that survives into the next frame: `current` is written, and becomes `previous` when the frame
+/// ends. Where no pass writes `current` in a frame, `previous` stays as it was.
 struct TextureHistory {
     TextureHandle previous;  ///< readable from the beginning; zero where there was no frame before
     TextureHandle current;

@@ -8,7 +8,7 @@
 
 namespace aftershade::graph {
 
-/// What a fused pass may have of each, all its parts counted.
+/// Limits of a fused pass, over all its parts.
 struct FusionLimits {
     int parts = 8;
     int samplers = 16;

@@ -58,7 +58,7 @@ public:
     static const Capture::Data& data(const Capture& capture) { return *capture.data_; }
     static std::shared_ptr<const Capture::Data> share(const Capture& capture) { return capture.data_; }
     static Capture capture(Capture::Data data);
-    /// What the modules below made of the frame.
+    /// The frame's result in the modules below.
     static const FrameResult& frame(const Result& result);
     static std::shared_ptr<const Sequence::Data> share(const Sequence& sequence) { return sequence.data_; }
     static Sequence sequence(std::shared_ptr<const Sequence::Data> data) { return Sequence(std::move(data)); }

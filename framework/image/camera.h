@@ -30,7 +30,8 @@ const CameraField* find_camera_field(const std::string& name);
 
 /// Before the name of a field where parameters say what they are "from": "camera.focus_distance".
 inline constexpr std::string_view kFromCamera = "camera.";
-/// What a parameter of this type may be "from": the lens model for an enum, the fields for every other type.
+/// Allowed values of "from" for a parameter of this type: the lens model for an enum, the fields for every
+/// other type.
 std::vector<std::string> camera_sources(ParamType type);
 /// Whether the field's numbers convert to the parameter's unit.
 bool converts_to(const CameraField& field, const ParamSpec& spec);

@@ -15,8 +15,8 @@ namespace aftershade {
 std::vector<std::filesystem::path> files_of_pipeline(const Pipeline& pipeline,
                                                      const std::filesystem::path& glsl_folder);
 
-/// What the files hold that the step's parameters and its mask name, and scattering profiles by what they
-/// say. Throws Error(ErrorKind::usage) for a file that cannot be read.
+/// The content of the files that the step's parameters and its mask name, and of scattering profiles.
+/// Throws Error(ErrorKind::usage) for a file that cannot be read.
 std::string content_of_values(const PipelineStep& step);
 
 /// The manifest, its modules' manifests, native sources, and every shader with what it includes: each file's

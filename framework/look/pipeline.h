@@ -130,7 +130,7 @@ Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const Pipeline
 /// The value with the path of a file, where it is one, named from `folder`; "" stays "".
 ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder);
 
-/// What every step takes from the host: "mix", 0 to 1.
+/// The parameter that every step has from the host: "mix", 0 to 1.
 const ParamSpec& mix_spec();
 
 /// A role that the pipeline requires and a capture lacks.

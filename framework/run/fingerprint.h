@@ -27,7 +27,7 @@ std::string hash_of_parts(const FingerprintParts& parts);
 /// "look and effect bokeh changed": the parts that differ, at most three by name.
 std::string difference_of_parts(const FingerprintParts& before, const FingerprintParts& now);
 
-/// What all frames of a run share. [refers to what the caller keeps]
+/// Inputs of the fingerprint that all frames of a run share. [refers to what the caller keeps]
 struct FingerprintSource {
     const Look& look;
     const Pipeline& pipeline;

@@ -14,7 +14,7 @@
 
 namespace aftershade::scene {
 
-/// What a true picture has that a capture's one ray a pixel has not.
+/// Effects of a true picture that a capture's one ray a pixel lacks.
 struct TruthKinds {
     bool lens = false;
     bool shutter = false;
@@ -60,14 +60,14 @@ public:
     Capture render_capture(int frame, double time, std::array<double, 2> jitter_px = {0, 0}) const;
     Capture render_capture(int frame) const { return render_capture(frame, frame); }
 
-    /// The same, and what lies behind: layer n has the n-th surface that each ray meets
+    /// The same, with the hidden surfaces: layer n has the n-th surface that each ray meets
     /// (World::trace_through), color times its opacity and alpha its opacity, the background behind the last
-    /// one, and nothing, alpha 0 and depth +inf, behind that. What shines through the last layer is in it,
-    /// with alpha 1. The first of one layer is render_capture()'s.
+    /// one, and nothing, alpha 0 and depth +inf, behind that. The last layer includes the light that shines
+    /// through it, with alpha 1. The first of one layer is render_capture()'s.
     std::vector<Capture> render_layers(int frame, double time, std::array<double, 2> jitter_px,
                                        int layers) const;
-    /// Deep samples: all that kDeepRays rays over each pixel's square meet. What they meet of one object at
-    /// nearly one depth is a sample, whose alpha is the share of the rays times the opacity. Channels: R G B
+    /// Deep samples: all surfaces that kDeepRays rays over each pixel's square hit. Hits on one object at
+    /// nearly one depth are a sample, whose alpha is the share of the rays times the opacity. Channels: R G B
     /// A Z ZBack, velocity.XY, velocity_next.XY, normal.XYZ, object_id.I. The background is an opaque sample
     /// at +inf.
     DeepImage render_deep(int frame, double time, std::array<double, 2> jitter_px) const;

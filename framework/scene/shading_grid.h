@@ -27,7 +27,7 @@ struct ShadingGridSettings {
     bool anisotropic = false;  ///< cells as long and as wide as the blur allows (Vaidyanathan et al. 2012)
 };
 
-/// What a shading sample stands for.
+/// The cell of a shading sample.
 struct ShadingPlace {
     int object = 0;
     std::uint32_t triangle = 0;

@@ -167,7 +167,7 @@ inline constexpr int kMaxLayers = 256;
 inline constexpr int kMaxRepeat = 4096;
 inline constexpr int kMaxIterations = 60000;  ///< llvmpipe silently ends loops after 65,535
 
-/// What a draw of instances draws, and how many.
+/// The primitive of a draw of instances, and their number.
 struct InstanceSpec {
     enum class Primitive { quads, points };  ///< gl_VertexID 0..3 of a strip, or 0
     Primitive primitive = Primitive::quads;

@@ -37,7 +37,7 @@ std::optional<int> pass_offset(std::string_view text);
 
 // ---- forms ----
 
-/// What the name of a thing must be: "the id '{}' must be snake_case ...".
+/// The rule for a thing's name: "the id '{}' must be snake_case ...".
 grammar::Form identifier_form(const std::string& thing);
 /// Text that names what stands elsewhere. The schema checks only how it is written; the parser, which has the
 /// declarations, reports every other.

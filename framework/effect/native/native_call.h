@@ -10,7 +10,7 @@
 
 namespace aftershade {
 
-/// What went wrong in one call, in the plug-in's order; "and 5 more" beyond a limit.
+/// Faults of one call, in the plug-in's order; "and 5 more" beyond a limit.
 class NativeFaults {
 public:
     /// Returns `status`, so that a callback can end with it.

@@ -12,7 +12,7 @@
 
 namespace aftershade {
 
-/// What a process of native code is requested to do; the words of a request begin with one.
+/// Requests to a process of native code; the words of a request begin with one.
 enum class NativeRequest { open = 1, create, prepare, reset, destroy };
 
 /// Above any sound message: eight tables of the largest size.
