@@ -41,7 +41,8 @@ Response error_response(int status, const std::string& message);
 /// Code 500: the message of an Error; of any other exception that it is a fault of the program.
 Response fault_response(const std::exception& error);
 
-/// With the headers that every answer has: no sniffing, no store, no framing, and no scripts except the page's own.
+/// With the headers that every answer has: no sniffing, no store, no framing, and no scripts except the
+/// page's own.
 std::string response_bytes(const Response& response, bool is_kept = false);
 
 /// nullopt where it is not HTTP/1.1, or where a header stands twice. `head` ends with its empty line; what is
