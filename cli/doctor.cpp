@@ -96,13 +96,13 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
             fmt::print("{:<13} {:<7} {:<45} {}\n", name, "yes", report.info.renderer, report.info.version);
         else fmt::print("{:<13} {:<7} {}\n", name, "no", report.reason);
     }
+    if (const std::string& fault = gpu::prepare_driver_cache(); !fault.empty())
+        fmt::print("shader cache  off: {}\n", printable(fault));
+    fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
     for (const gpu::BackendReport& report : reports)
         if (report.usable)
             fmt::print("draws with    {} on {}{}\n", draws_with(report), gpu::backend_name(report.backend),
                        report.info.software ? " (a software renderer gains nothing by compute)" : "");
-    if (const std::string& fault = gpu::prepare_driver_cache(); !fault.empty())
-        fmt::print("shader cache  off: {}\n", printable(fault));
-    fmt::print("cpu           {} ({} threads)\n", cpu_model(), std::thread::hardware_concurrency());
     try {
         print_confinement(confinement_of_plugins());
     } catch (const Error& error) {

@@ -131,6 +131,10 @@ void add_diagnosis_options(CLI::App& app, RunArguments& options) {
                  "Name the pass that first writes NaN or infinite values, with place and count; slow");
     app.add_flag("--apart", options.apart,
                  "Draw each pass by itself, also where passes could be fused: the time of each, slower");
+    app.add_flag(
+        "--plain", options.plain,
+        "Draw without what is done for software GL alone (docs/llvmpipe.md): the same picture, slower; "
+        "for faults of a driver");
     app.add_option("--telemetry", options.telemetry,
                    "Write each frame's statistics, memory by format and time by pass to this .json");
     app.add_option("--telemetry-plot", options.telemetry_plot,
@@ -164,6 +168,11 @@ void add_run_options(CLI::App& app, RunArguments& options) {
                    "picture, which data-centre GPUs run faster; auto: what is faster on this GPU "
                    "(default: $AFTERSHADE_DRAW_WITH, else auto)")
         ->check(CLI::IsMember({"auto", "fragment", "compute"}));
+    app.add_option(
+           "--read-ahead", options.read_ahead,
+           "Frames to read, and frames to write, while one is rendered (1 to 64; default: a quarter of "
+           "the cores, at most 8, as far as memory has room)")
+        ->check(CLI::Range(1, 64));
     add_plugin_options(app, options.plugins);
 }
 
@@ -248,8 +257,10 @@ RunOptions run_options(const RunArguments& options, Diagnostics& diagnostics) {
         diagnostics.error({"--trace " + options.trace}, "must end in .json");
     run.missing = missing_frame(options.missing);
     run.on_nan = nan_policy(options.on_nan);
+    run.frames_ahead = options.read_ahead;
     run.drawing.audits = options.audit;
-    run.drawing.fuses_passes = !options.apart;
+    run.drawing.fuses_passes = !options.apart && !options.plain;
+    run.drawing.plain = options.plain;
     run.drawing.draw_with = parse_draw_with(options.draw_with).value_or(DrawWith::automatic);
     // A gap in a stream would shift every frame behind it.
     run.stop_on_error = options.jobs.stop_on_error || options.streams();

@@ -31,6 +31,7 @@ struct RunArguments {
     std::string pixel_type = "half";
     std::string backend;
     std::string draw_with;
+    int read_ahead = 0;
     std::string progress = "auto";
     std::string missing = "error";
     std::string on_nan = "warn";
@@ -39,6 +40,7 @@ struct RunArguments {
     bool keep_channels = false;
     bool audit = false;
     bool apart = false;
+    bool plain = false;
     bool explain = false, verbose = false;
     bool watch = false;
     std::string telemetry;

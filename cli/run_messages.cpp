@@ -211,7 +211,8 @@ void print_draws(const std::vector<DrawnPass>& draws) {
     std::string others;
     for (const DrawnPass& draw : draws)
         if (!draw.computes) others += fmt::format("; {} {}", draw.pass, draw.why_drawn);
-    fmt::print(stderr, "{} of {} draws ran as compute shaders{}\n", computed, draws.size(), printable(others));
+    fmt::print(stderr, "{} of {} draws ran as compute shaders{}\n", computed, draws.size(),
+               printable(others));
 }
 
 }  // namespace

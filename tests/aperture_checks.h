@@ -12,6 +12,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/compare/metrics.h"
+#include "tests/backends.h"
 #include "tests/lens.h"
 #include "tests/look_runner.h"
 #include "tests/polygon.h"
@@ -26,7 +27,7 @@ constexpr float kApertureFarM = std::numeric_limits<float>::infinity();
 
 /// `more`: further members of "params".
 inline Image through_aperture(const std::string& effect, const Capture& capture, double radius_px,
-                              const std::string& more = "", gpu::Backend backend = gpu::Backend::software) {
+                              const std::string& more = "", gpu::Backend backend = gpu::test_backend()) {
     const int width = capture.images.at("color").width();
     return LookRunner(Lens{radius_px, width}.look(effect, more), backend).color(capture);
 }
@@ -289,7 +290,7 @@ inline void expect_same_bits_on_both_backends(const std::string& effect,
                                               const std::string& more = R"("blades": 5, "rotation": 7)",
                                               const Capture& capture = aperture_random_lights()) {
     expect_same_bits(through_aperture(effect, capture, 12, more, gpu::Backend::egl_software),
-                     through_aperture(effect, capture, 12, more, gpu::Backend::software));
+                     through_aperture(effect, capture, 12, more, gpu::test_backend()));
 }
 
 /// No darker than the darkest pixel and no brighter than the brightest, up to rounding; so nothing that is no
@@ -334,7 +335,7 @@ inline double suzanne_through_aperture_db(const std::string& effect, const std::
     const SuzanneThroughLens suzanne = read_suzanne_through_lens(folder);
     LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": ")" + effect + R"(", "params": {)" +
                           kSuzanneLens + (more.empty() ? "" : ", " + more) + "}}]}",
-                      gpu::Backend::software);
+                      gpu::test_backend());
     const double db = display_psnr_db(suzanne.truth, runner.color(suzanne.sharp));
     fmt::print("PSNR of {} against the lens: {:.2f} dB {}\n", effect, db, more);
     return db;

@@ -1,5 +1,7 @@
 // Every effect drawn by compute shaders: the bits of fragments, with every value of what its programs depend
 // on, and at the ends of every other parameter. Prints the draws that stay fragments, with the reason.
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -44,9 +46,8 @@ protected:
         EXPECT_FALSE(diagnostics.has_errors()) << faults_of(diagnostics);
         Screen& on = screen(backend);
         // Guarded programs are others.
-        const auto programs = drawing.guards_loops
-                                  ? std::make_shared<ProgramCache>(on.context, kRoot / "glsl")
-                                  : on.programs;
+        const auto programs =
+            drawing.guards_loops ? std::make_shared<ProgramCache>(on.context, kRoot / "glsl") : on.programs;
         PipelineRenderer renderer(on.context, pipeline, programs, {}, drawing);
         std::vector<std::string> roles;
         for (const OutputSpec& output : manifest().outputs) roles.push_back(output.role);
@@ -65,12 +66,15 @@ protected:
     void expect_same(const Values& values, gpu::Backend backend) {
         const Run drawn = run_with(values, backend, {.draw_with = DrawWith::fragment});
         const Run computed = run_with(values, backend, {.draw_with = DrawWith::compute});
-        const std::string where = std::string(gpu::backend_name(backend)) + ": " + look_of(GetParam(), values);
+        const std::string where =
+            std::string(gpu::backend_name(backend)) + ": " + look_of(GetParam(), values);
         const std::string difference = first_difference(drawn, computed);
         if (!difference.empty()) {
             const std::string fault = fault_of_loops(values, backend);
-            if (fault.empty()) ADD_FAILURE() << difference << " on " << where;
-            else std::cout << "another picture on " << where << "\n    " << fault << "\n";
+            if (fault.empty()) {
+                EXPECT_LE(largest_difference(drawn, computed), most_difference()) << where;
+            }
+            std::cout << difference << " differs on " << where << "\n    " << fault << "\n";
         }
         for (const DrawnPass& draw : computed.draws) {
             EXPECT_EQ(draw.computes, draw.why_drawn.empty()) << draw.pass << ": " << draw.why_drawn;
@@ -87,11 +91,28 @@ protected:
         return "";
     }
 
-    /// llvmpipe counts iterations of several pixels together, fragments' and invocations' by other groups, and
-    /// ends loops after 65,535: then neither picture is right.
+    /// Of a value, over the larger one or 1.
+    static double largest_difference(const Run& drawn, const Run& computed) {
+        double largest = 0;
+        for (std::size_t i = 0; i < drawn.frames.size(); ++i)
+            for (const auto& [role, image] : drawn.frames[i].images) {
+                const auto other = computed.frames[i].images.at(role).floats();
+                for (std::size_t k = 0; k < other.size(); ++k) {
+                    const double a = image.floats()[k], b = other[k];
+                    largest = std::max(largest, std::abs(a - b) / std::max({1.0, std::abs(a), std::abs(b)}));
+                }
+            }
+        return largest;
+    }
+
+    /// docs/gpu.md: at a lens of 0.5 mm, llvmpipe computes the visible share of eight pixels in another last
+    /// place, and it is rounded to half.
+    double most_difference() const { return GetParam() == "dof" ? 0.0005 : 0; }
+
+    /// llvmpipe counts iterations of several pixels together, fragments' and invocations' by other groups,
+    /// and ends loops after 65,535: then neither picture is right.
     std::string fault_of_loops(const Values& values, gpu::Backend backend) const {
-        for (const DrawWith way : {DrawWith::fragment, DrawWith::compute})
-            try {
+        for (const DrawWith way : {DrawWith::fragment, DrawWith::compute}) try {
                 run_with(values, backend, {.guards_loops = true, .draw_with = way});
             } catch (const Error& error) {
                 return error.what();
@@ -120,6 +141,15 @@ TEST_P(EffectAsCompute, GivesTheBitsOfFragments) {
         for (const ParamValue& value : extremes_of(spec))
             if (value != spec.default_value) expect_same({{spec.name, value}}, backends().front());
     print_draws();
+}
+
+/// --plain.
+TEST_P(EffectAsCompute, GivesTheBitsOfPlainDrawing) {
+    const auto backend = backends().front();
+    const Run drawn = run_with({}, backend, {.draw_with = DrawWith::fragment});
+    const Run plain =
+        run_with({}, backend, {.fuses_passes = false, .plain = true, .draw_with = DrawWith::fragment});
+    EXPECT_EQ(first_difference(drawn, plain), "");
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // What the tests of every effect have in common: the effects by their folders, looks, captures.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
@@ -15,6 +17,7 @@
 #include "framework/document/units.h"
 #include "framework/effect/registry.h"
 #include "framework/gpu/context.h"
+#include "tests/backends.h"
 #include "tests/camera_pose.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
@@ -36,12 +39,12 @@ inline std::string faults_of(const Diagnostics& diagnostics) {
     return text.str();
 }
 
-/// The software backends of this machine. None at all is a failure of every test here.
+/// Those of gpu::test_backends() that this machine has. None at all is a failure of every test here.
 inline const std::vector<gpu::Backend>& backends() {
     static const std::vector<gpu::Backend> present = [] {
         std::vector<gpu::Backend> usable;
-        for (const gpu::BackendReport& report : gpu::probe_backends())
-            if (report.usable && report.info.software) usable.push_back(report.info.backend);
+        std::ranges::copy_if(gpu::test_backends(), std::back_inserter(usable),
+                             [](gpu::Backend backend) { return gpu::why_not(backend).empty(); });
         return usable;
     }();
     return present;

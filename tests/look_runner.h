@@ -10,6 +10,7 @@
 #include "aftershade/host.h"
 #include "framework/gpu/context.h"
 #include "framework/host/rendering.h"
+#include "tests/backends.h"
 
 namespace aftershade::test {
 
@@ -57,7 +58,7 @@ inline std::string look_of_step(const std::string& effect, const std::string& pa
 
 /// The images that this one step makes of a capture.
 inline FrameResult run_step(const std::string& effect, const Capture& capture, const std::string& params) {
-    return LookRunner(look_of_step(effect, params), gpu::Backend::software).run(capture);
+    return LookRunner(look_of_step(effect, params), gpu::test_backend()).run(capture);
 }
 
 }  // namespace aftershade::test

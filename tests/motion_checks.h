@@ -15,6 +15,7 @@
 #include "framework/compare/metrics.h"
 #include "framework/file/exr_file.h"
 #include "framework/scene/scene_renderer.h"
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/scene/scene_text.h"
 
@@ -114,7 +115,7 @@ struct SuzanneInMotion {
         return {display_psnr_db(truth, picture), display_psnr_db_where(changed, truth, picture)};
     }
     Psnr through(const std::string& effect, const std::string& params = "") const {
-        LookRunner runner(look_of_step(effect, params), gpu::Backend::software);
+        LookRunner runner(look_of_step(effect, params), gpu::test_backend());
         FrameInputs frame;
         frame.capture = &capture;
         frame.neighbours[-1] = &before;

@@ -8,6 +8,7 @@
 
 #include "framework/look/pixel_shape.h"
 #include "framework/look/reach.h"
+#include "tests/backends.h"
 #include "tests/every_effect.h"
 #include "tests/render/effect_fixture.h"
 #include "tests/square_pixels_by_hand.h"
@@ -284,7 +285,7 @@ TEST(PixelAspect, StepsThatAreDrawnAgainReadTheSquarePixelsOfThoseThatAreNot) {
         const Capture capture = lens_capture(aspect);
         FrameInputs frame;
         frame.capture = &capture;
-        gpu::Context context(gpu::Backend::software);
+        gpu::Context context(gpu::test_backend());
         Pipeline pipeline = bound.pipeline();
         PipelineRenderer kept(context, pipeline, kRoot, {}, {.keeps_steps = true});
         (void)kept.render(frame, {"display"}, false);

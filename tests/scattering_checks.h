@@ -18,6 +18,7 @@
 #include "framework/capture/capture.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/reference/burley.h"
 #include "tests/synthetic_capture.h"
@@ -82,7 +83,7 @@ inline std::string scattering_step(const std::string& effect, const std::string&
 }
 
 inline Image scattered(const std::string& look, const Capture& capture) {
-    return LookRunner(look, gpu::Backend::software).run(capture).images.at("irradiance");
+    return LookRunner(look, gpu::test_backend()).run(capture).images.at("irradiance");
 }
 
 /// Mean over `rows` rows around the middle one, so that noise does not count.
@@ -319,7 +320,7 @@ inline void expect_the_head_of_suzanne_alone_changes(const std::string& effect, 
         R"(", "params": { "object_ids": [1], "scattering_profile": { "type": "burley", "d_mm": [60, 25, 15] } )" +
         (more.empty() ? "" : ", ") + more + R"( } }, { "effect": "sss_combine" } ] })";
     const Image before = capture.images.at("color"),
-                after = LookRunner(look, gpu::Backend::software).color(capture);
+                after = LookRunner(look, gpu::test_backend()).color(capture);
     const Image& ids = capture.images.at("object_id");
     int head = 0, changed = 0;
     for (int y = 0; y < before.height(); ++y)

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/file/exr_file.h"
+#include "tests/backends.h"
 #include "tests/cli/command.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"
@@ -44,7 +45,7 @@ Image accumulated(LookRunner& runner, const std::vector<Capture>& captures) {
 }
 
 Image accumulated(const std::string& shape, const std::vector<Capture>& captures) {
-    LookRunner runner(look_of(shape), gpu::Backend::software);
+    LookRunner runner(look_of(shape), gpu::test_backend());
     return accumulated(runner, captures);
 }
 
@@ -69,7 +70,7 @@ TEST(Accumulate, GivesEverySubframeTheWeightOfItsShapeAndTheyAddUpToOne) {
         for (const int count : {2, 3, 4, 7, 16}) {
             const std::vector<double> expected = weights_of(shape, count);
             double sum = 0;
-            LookRunner runner(look_of(shape), gpu::Backend::software);
+            LookRunner runner(look_of(shape), gpu::test_backend());
             for (int lit = 0; lit < count; ++lit) {
                 std::vector<Capture> captures;
                 for (int s = 0; s < count; ++s) captures.push_back(grey(s == lit ? 1.0f : 0.0f, lit + 1));
@@ -87,7 +88,7 @@ TEST(Accumulate, LeavesACaptureWithoutSubframesAsItIsBitForBit) {
     capture.images.at("color").at(3, 2, 0) = 3e8f;
     capture.images.at("color").at(3, 2, 3) = 0.3f;
     for (const std::string shape : kShapes) {
-        LookRunner runner(look_of(shape), gpu::Backend::software);
+        LookRunner runner(look_of(shape), gpu::test_backend());
         for (int frame = 1; frame <= 3; ++frame) {
             capture.header.frame = frame;
             EXPECT_TRUE(same_in_window(capture.images.at("color"), runner.color(capture), {0, 0, 15, 8}));
@@ -120,7 +121,7 @@ TEST(Accumulate, KeepsSmallLightBesideOneBrightMomentOverAThousandSubframes) {
 }
 
 TEST(Accumulate, TakesAlphaAlongAndNothingOfTheFrameBefore) {
-    LookRunner runner(look_of("box"), gpu::Backend::software);
+    LookRunner runner(look_of("box"), gpu::test_backend());
     accumulated(runner, {grey(7, 1), grey(9, 1)});
     std::vector<Capture> second{grey(1, 2), grey(0, 2)};
     for (float& value : second[1].images.at("color").floats()) value = 0;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
@@ -81,7 +82,7 @@ TEST(Bloom, RadiusIsTheStandardDeviationOfTheWidestBlur) {
 TEST(Bloom, GivesNoLightToPixelsBeyondTenTimesItsRadius) {
     for (const int radius : {1, 5, 20}) {
         const std::string params = R"("fireflies": "keep", "scatter": 1, "intensity": 1, "radius": )";
-        LookRunner runner(look_of_step("bloom", params + std::to_string(radius)), gpu::Backend::software);
+        LookRunner runner(look_of_step("bloom", params + std::to_string(radius)), gpu::test_backend());
         for (const int x : {383, 384, 389, 511, 512}) {
             const Image image = runner.color(point(x, 7, 1e6f, 896, 16));
             const int reach = 10 * radius + 12;

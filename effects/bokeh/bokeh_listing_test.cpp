@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "effects/bokeh/bokeh_test.h"
+#include "tests/backends.h"
 #include "tests/synthetic_capture.h"
 
 namespace aftershade::test::bokeh {
@@ -139,7 +140,7 @@ class BokehPresetSeed2013 : public testing::TestWithParam<DepthCase> {};
 
 TEST_P(BokehPresetSeed2013, IsTheListingsToFloatPrecision) {
     const Capture capture = random_capture(GetParam().nearest_m, GetParam().range_m);
-    const Image out = LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::software).color(capture);
+    const Image out = LookRunner(seed_look(lens(9, kWidth)), gpu::test_backend()).color(capture);
     const Texture<Rgba> expected = listings(scene_of(capture, 9));
     double most = 0;
     for (int y = 0; y < kHeight; ++y)
@@ -157,14 +158,14 @@ INSTANTIATE_TEST_SUITE_P(All, BokehPresetSeed2013,
 
 TEST(BokehPresetSeed2013, CopiesWhatIsExactlyInFocusAndKeepsAUniformImage) {
     Capture capture = random_capture(float(kFocusM), 0);
-    const Image in_focus = LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::software).color(capture);
+    const Image in_focus = LookRunner(seed_look(lens(9, kWidth)), gpu::test_backend()).color(capture);
     const auto expected = capture.images.at("color").floats();
     EXPECT_TRUE(std::equal(expected.begin(), expected.end(), in_focus.floats().begin()));
 
     capture = random_capture(0.8f, 8);
     capture.images["depth"].at(5, 5, 0) = std::numeric_limits<float>::infinity();
     for (float& value : capture.images["color"].floats()) value = 0.7f;
-    const Image uniform = LookRunner(seed_look(lens(9, kWidth)), gpu::Backend::software).color(capture);
+    const Image uniform = LookRunner(seed_look(lens(9, kWidth)), gpu::test_backend()).color(capture);
     for (const float value : uniform.floats()) ASSERT_NEAR(value, 0.7f, 2e-6f * 0.7f);
 }
 

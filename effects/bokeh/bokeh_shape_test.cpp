@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "effects/bokeh/bokeh_test.h"
+#include "tests/backends.h"
 #include "tests/not_finite.h"
 #include "tests/polygon.h"
 #include "tests/synthetic_capture.h"
@@ -46,7 +47,7 @@ TEST_P(BokehShape, OfABrightPointIsThePolygonWithItsEnergy) {
                                           .points = {{center, center, intensity}}});
     const std::string shape = fmt::format(R"({}, "shape": "{}", "combine": "{}", "rotation": {})",
                                           lens(c.radius_px, size), c.shape, c.combine, c.rotation_deg);
-    const Image blurred = LookRunner(look(shape), gpu::Backend::software).color(capture);
+    const Image blurred = LookRunner(look(shape), gpu::test_backend()).color(capture);
 
     double energy = 0;
     for (int y = 0; y < size; ++y)
@@ -88,7 +89,7 @@ TEST(BokehShapeOfAParallelogram, LeansByItsSkewWithinTheCircle) {
     const Capture capture = make_capture({.width = size, .height = size, .points = {{center, center, 1000}}});
     const std::string shape =
         fmt::format(R"({}, "shape": "parallelogram", "skew": {})", lens(radius_px, size), skew_deg);
-    const Image blurred = LookRunner(look(shape), gpu::Backend::software).color(capture);
+    const Image blurred = LookRunner(look(shape), gpu::test_backend()).color(capture);
     // Half sides h u and h v with 60 deg between them; the longer diagonal |h (u + v)| is the circumradius.
     const double angle = (90 - skew_deg) * std::numbers::pi / 180, h = radius_px / (2 * std::cos(angle / 2));
     const double vx = h * std::cos(angle), vy = h * std::sin(angle);

@@ -10,6 +10,7 @@
 #include "framework/capture/capture.h"
 #include "framework/image/role.h"
 #include "tests/aperture_checks.h"
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/not_finite.h"
 #include "tests/synthetic_capture.h"
@@ -30,7 +31,7 @@ TEST(BokehCoc, MatchesTheThinLensTableToATenthOfAPercent) {
     constexpr CocCase kTable[] = {{1.0f, 34.19}, {1.5f, 11.40}, {2.0f, 0}, {4.0f, 17.09}, {kInfinity, 34.19}};
     Capture capture = make_capture({.width = 1920, .height = 2});
     for (int i = 0; i < 5; ++i) capture.images["depth"].at(100 * i, 0, 0) = kTable[i].depth_m;
-    LookRunner runner(look(R"("f_number": 2)"), gpu::Backend::software, {"bokeh.coc"});
+    LookRunner runner(look(R"("f_number": 2)"), gpu::test_backend(), {"bokeh.coc"});
     const Image coc = runner.run(capture).taps.at("bokeh.coc");
     for (int i = 0; i < 5; ++i) {
         // Five figures of the formula itself; the table above gives two decimals.
@@ -46,8 +47,7 @@ TEST(BokehCoc, MatchesTheThinLensTableToATenthOfAPercent) {
 
 TEST(BokehCoc, OfAPinholeLensDividesByTheFocusDistanceAlone) {
     Capture capture = make_capture({.width = 1920, .height = 2});
-    LookRunner runner(look(R"("f_number": 2, "lens_model": "pinhole")"), gpu::Backend::software,
-                      {"bokeh.coc"});
+    LookRunner runner(look(R"("f_number": 2, "lens_model": "pinhole")"), gpu::test_backend(), {"bokeh.coc"});
     const double radius_px = 0.5 * 25 * 50 / 2000.0 * 1920 / 36;
     EXPECT_NEAR(runner.run(capture).taps.at("bokeh.coc").at(0, 0, 0), radius_px, 0.001 * radius_px);
 }
@@ -55,7 +55,7 @@ TEST(BokehCoc, OfAPinholeLensDividesByTheFocusDistanceAlone) {
 TEST(BokehCoc, IsCutToTheLargestRadius) {
     Capture capture = make_capture({.width = 1920, .height = 2});
     capture.images["depth"].at(0, 0, 0) = 0.02f;
-    LookRunner runner(look(R"("f_number": 2, "max_coc_radius": 10)"), gpu::Backend::software, {"bokeh.coc"});
+    LookRunner runner(look(R"("f_number": 2, "max_coc_radius": 10)"), gpu::test_backend(), {"bokeh.coc"});
     const Image coc = runner.run(capture).taps.at("bokeh.coc");
     EXPECT_EQ(coc.at(0, 0, 0), -10);
     EXPECT_EQ(coc.at(5, 0, 0), 10);
@@ -95,7 +95,7 @@ Capture near_box() {
 TEST(Bokeh, SpreadsANearObjectSoftlyOverWhatIsInFocus) {
     const Capture capture = near_box();
     const Image out =
-        LookRunner(look(lens(12, 96) + R"(, "shape": "square")"), gpu::Backend::software).color(capture);
+        LookRunner(look(lens(12, 96) + R"(, "shape": "square")"), gpu::test_backend()).color(capture);
     // A square of circumradius 12 px reaches 8.5 px: the box's edge at x = 64 becomes a ramp from 55.5
     // to 72.5.
     EXPECT_NEAR(out.at(66, 24, 0), 0.5f - 2.5f / 17, 0.05f);

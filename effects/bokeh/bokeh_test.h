@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/capture/capture.h"
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 
 namespace aftershade::test::bokeh {
@@ -28,7 +29,7 @@ inline std::string lens(double radius_px, int width_px) {
 }
 
 inline Image color(const Capture& capture, const std::string& params,
-                   gpu::Backend backend = gpu::Backend::software) {
+                   gpu::Backend backend = gpu::test_backend()) {
     return LookRunner(look(params), backend).color(capture);
 }
 

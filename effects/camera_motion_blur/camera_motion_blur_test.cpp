@@ -11,6 +11,7 @@
 #include "framework/compare/metrics.h"
 #include "framework/image/role.h"
 #include "framework/scene/scene_renderer.h"
+#include "tests/backends.h"
 #include "tests/camera_pose.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"
@@ -31,7 +32,7 @@ std::string look_of(const std::string& params) {
 Image blurred(const std::string& params, Capture before, Capture now) {
     before.header.frame = 1;
     now.header.frame = 2;
-    LookRunner runner(look_of(params), gpu::Backend::software);
+    LookRunner runner(look_of(params), gpu::test_backend());
     runner.color(before);
     return runner.color(now);
 }
@@ -79,7 +80,7 @@ std::pair<double, double> decibels(const scene::Scene& scene, const std::string&
     settings.kinds.shutter = true;
     settings.samples = 64;
     const Image truth = renderer.render_truth(6, settings);
-    LookRunner runner(look_of(params), gpu::Backend::software);
+    LookRunner runner(look_of(params), gpu::test_backend());
     const auto capture_of = [&](int frame) {
         Capture capture = renderer.render_capture(frame);
         if (layers == 1) return capture;
@@ -196,7 +197,7 @@ TEST(CameraMotionBlur, OfADepthAloneIsTheMeanAlongTheCamerasVelocity) {
         }
     // And velocity_from_camera says the same velocity.
     LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "velocity_from_camera"}]})",
-                      gpu::Backend::software);
+                      gpu::test_backend());
     Capture first = wall(before, 3, waves), second = wall({}, 3, waves);
     second.header.frame = first.header.frame + 1;
     runner.run(first);
@@ -309,7 +310,7 @@ TEST(CameraMotionBlur, LeavesThePictureAloneBitForBitWhereNothingMovesOrTheShutt
 
 TEST(CameraMotionBlur, LeavesThePictureAloneWhereTheMotionIsNotKnown) {
     Capture first = wall({}, 3, waves), second = wall(before_moving_by(9), 3, waves);
-    LookRunner runner(look_of(""), gpu::Backend::software);
+    LookRunner runner(look_of(""), gpu::test_backend());
     EXPECT_TRUE(same(first.images.at("color"), runner.color(first))) << "first frame";
     second.header.frame = first.header.frame + 1;
     FrameInputs cut;

@@ -9,6 +9,7 @@
 
 #include "framework/image/role.h"
 #include "tests/aperture_checks.h"
+#include "tests/backends.h"
 #include "tests/motion_checks.h"
 #include "tests/real_captures.h"
 
@@ -175,7 +176,7 @@ TEST(Decoupled, WhereLensAndShutterMeetIsNearerToTheTruthThanOneAfterTheOther) {
     for (std::size_t i = 0; i < meet.size(); ++i) meet[i] = meet[i] && by_lens[i];
     ASSERT_GT(std::count(meet.begin(), meet.end(), true), 300);
     const auto db = [&](const std::string& steps) {
-        LookRunner runner(R"({"aftershade": 1, "steps": [)" + steps + "]}", gpu::Backend::software);
+        LookRunner runner(R"({"aftershade": 1, "steps": [)" + steps + "]}", gpu::test_backend());
         return display_psnr_db_where(meet, both, runner.color(capture));
     };
     const double apart = db(R"({"effect": "dof"}, {"effect": "motion_blur"})"),
@@ -187,7 +188,7 @@ TEST(Decoupled, WhereLensAndShutterMeetIsNearerToTheTruthThanOneAfterTheOther) {
 // ---- readouts ----
 
 TEST(Decoupled, CountsTheSamplesThatNoCapturedPixelReaches) {
-    LookRunner runner(Lens{12, 96}.look(kEffect, R"("blades": 4)"), gpu::Backend::software,
+    LookRunner runner(Lens{12, 96}.look(kEffect, R"("blades": 4)"), gpu::test_backend(),
                       {"decoupled.shares"});
     const FrameResult result = runner.run(near_box_before_focus());
     const Image& shares = result.taps.at("decoupled.shares");

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/aperture_checks.h"
+#include "tests/backends.h"
 #include "tests/not_finite.h"
 
 namespace aftershade::test::dof {
@@ -196,7 +197,7 @@ TEST(Dof, BlursAlphaWithTheColorThatItCovers) {
 TEST(Dof, ShowsTheBlurOfALightInTheOverscan) {
     Capture capture = make_capture({.width = 96, .height = 48, .points = {{4, 24, 1000}}});
     capture.header.display_window = {8, 0, 95, 47};
-    const Image out = LookRunner(Lens{12, 88}.look("dof"), gpu::Backend::software).color(capture);
+    const Image out = LookRunner(Lens{12, 88}.look("dof"), gpu::test_backend()).color(capture);
     EXPECT_NEAR(out.at(10, 24, 0), 1000 / (2.598 * 12 * 12), 0.1);
 }
 
@@ -211,11 +212,11 @@ TEST(Dof, LeavesNothingOfAFrameInTheNextOne) {
     for (const std::string more :
          {"", R"("quality": "fast")", R"("background": "neighbours", "highlights": "gather")"}) {
         const std::string look = Lens{20, 200}.look("dof", more);
-        LookRunner runner(look, gpu::Backend::software);
+        LookRunner runner(look, gpu::test_backend());
         for (const Capture& capture : {box_at(20, kFocusM / 2), box_at(130, kFocusM / 2),
                                        box_at(60, kInfinity), box_at(60, kFocusM), box_at(10, kFocusM / 2)}) {
             const Image shown = runner.color(capture),
-                        first = LookRunner(look, gpu::Backend::software).color(capture);
+                        first = LookRunner(look, gpu::test_backend()).color(capture);
             ASSERT_TRUE(std::ranges::equal(shown.floats(), first.floats())) << more;
         }
     }
@@ -240,7 +241,7 @@ TEST(DofFocus, IsTheSameByANumberADepthAnObjectTheCameraOrAKey) {
         {.width = 96, .height = 48, .background = {1, 0, 0}, .background_depth_m = 4, .box = box}, 2);
     capture.header.camera.set("focus_distance", 1.5);
     const auto picture = [&](const std::string& look) {
-        return LookRunner(look, gpu::Backend::software).color(capture);
+        return LookRunner(look, gpu::test_backend()).color(capture);
     };
     const Image expected = picture(focused_at("1.5"));
     for (const char* focus :
@@ -283,7 +284,7 @@ TEST(DofTiles, HaveTheModulesCocWhereABlurTakesLight) {
         std::vector<std::string> taps = {"dof.coc", "dof.lit_coc", "dof.lit", "dof.tile_step"};
         if (repairs) taps.emplace_back("dof.coc_step");
         LookRunner runner(Lens{12, 320}.look(kEffect, repairs ? "" : R"("highlight_repair": false)"),
-                          gpu::Backend::software, taps);
+                          gpu::test_backend(), taps);
         FrameResult result = runner.run(capture);
         const Image &coc = result.taps.at("dof.coc"), &lit_coc = result.taps.at("dof.lit_coc"),
                     &lit = result.taps.at("dof.lit"), &steps = result.taps.at("dof.tile_step");

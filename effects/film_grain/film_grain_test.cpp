@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
@@ -18,7 +19,7 @@ using Uvec3 = std::array<std::uint32_t, 3>;
 Image grained(const Capture& capture, const std::string& params, const std::string& name = "grain") {
     const std::string look = R"({"aftershade": 1, "steps": [{"name": ")" + name +
                              R"(", "effect": "film_grain", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::software).color(capture);
+    return LookRunner(look, gpu::test_backend()).color(capture);
 }
 
 Capture grey(float light, int frame = 1) {

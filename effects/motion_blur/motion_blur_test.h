@@ -4,6 +4,7 @@
 #include <string>
 
 #include "framework/image/role.h"
+#include "tests/backends.h"
 #include "tests/motion_checks.h"
 #include "tests/synthetic_capture.h"
 
@@ -12,7 +13,7 @@ namespace aftershade::test::motion_blur {
 inline constexpr double kExposure = 0.5;  // frames, of the default shutter_angle
 
 inline Image blur(const Capture& capture, const std::string& params = "") {
-    LookRunner runner(look_of_step("motion_blur", params), gpu::Backend::software);
+    LookRunner runner(look_of_step("motion_blur", params), gpu::test_backend());
     return runner.color(capture);
 }
 

@@ -49,7 +49,7 @@ TEST(MotionBlur, ShowsWhatNeighboursShowOfTheUncovered) {
     frame.neighbours[1] = &after;
     const auto error = [&](const char* background) {
         LookRunner runner(look_of_step("motion_blur", fmt::format(R"("background": "{}")", background)),
-                          gpu::Backend::software);
+                          gpu::test_backend());
         return error_of_box_over_disc(runner.run(frame).images.at("color"));
     };
     EXPECT_LT(error("neighbours"), 0.02);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/not_finite.h"
 #include "tests/synthetic_capture.h"
@@ -22,7 +23,7 @@ Capture ramp() {
 
 FrameResult sanitized(const Capture& capture, const std::string& step) {
     const std::string look = R"({"aftershade": 1, "steps": [{"effect": "sanitize")" + step + "}]}";
-    return LookRunner(look, gpu::Backend::software, {"sanitize.faults"}).run(capture);
+    return LookRunner(look, gpu::test_backend(), {"sanitize.faults"}).run(capture);
 }
 
 TEST(Sanitize, LeavesASoundImageAloneBitForBit) {
@@ -93,7 +94,7 @@ TEST(Sanitize, CountsTheFaultsOfEachKind) {
     for (const int x : {1, 4, 7}) color.at(x, 2, 0) = kNan;
     for (const int x : {2, 8}) color.at(x, 6, 1) = kInfinity;
     color.at(12, 4, 2) = -1;
-    host::Host host({.data = AFTERSHADE_SOURCE_DIR, .backend = host::Backend(int(gpu::Backend::software))});
+    host::Host host({.data = AFTERSHADE_SOURCE_DIR, .backend = host::Backend(int(gpu::test_backend()))});
     host::Session session =
         host.parse_look(R"({"aftershade": 1, "steps": [{"effect": "sanitize"}]})").session();
     const FrameResult frame = host::Access::frame(session.render(

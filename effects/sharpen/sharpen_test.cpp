@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
@@ -17,7 +18,7 @@ constexpr int kWidth = 48, kHeight = 32;
 Image sharpened(const Capture& capture, const std::string& params) {
     const std::string look =
         R"({"aftershade": 1, "steps": [{"effect": "sharpen", "params": {)" + params + "}}]}";
-    return LookRunner(look, gpu::Backend::software).color(capture);
+    return LookRunner(look, gpu::test_backend()).color(capture);
 }
 
 /// Soft waves, a hard edge to a lamp, and a little light below 0.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/scattering_checks.h"
 
 namespace aftershade::test::sss_adaptive_lasting {
@@ -47,8 +48,8 @@ float bars(double x, double y, int c) {
 }
 
 TEST(SssAdaptiveLasting, ForgetsAHighlightWithinFramesOfItsEnd) {
-    LookRunner guided(step("sss_adaptive"), gpu::Backend::software),
-        alone(step("sss_adaptive", R"("guiding": false)"), gpu::Backend::software);
+    LookRunner guided(step("sss_adaptive"), gpu::test_backend()),
+        alone(step("sss_adaptive", R"("guiding": false)"), gpu::test_backend());
     Image reference;
     for (int frame = 1; frame <= 14; ++frame) {
         const Capture capture = at_frame(frame, [&](int x, int y, int c) {
@@ -67,7 +68,7 @@ TEST(SssAdaptiveLasting, KeepsFineShadowsUnderACameraThatPansByHalfAPixel) {
         return float((std::abs(std::fmod(x + 0.4 * y, 10) - 5) < 1 ? 0.05 : 1) * (1 - 0.2 * c));
     };
     for (const double pan_px : {0.45, 1.5}) {
-        LookRunner guided(step("sss_adaptive"), gpu::Backend::software, {kSamples});
+        LookRunner guided(step("sss_adaptive"), gpu::test_backend(), {kSamples});
         for (int frame = 1; frame <= 14; ++frame) {
             const Capture capture = at_frame(
                 frame, [&](int x, int y, int c) { return stripes(x + pan_px * frame, y, c); }, pan_px);
@@ -86,7 +87,7 @@ TEST(SssAdaptiveLasting, KeepsFineShadowsUnderACameraThatPansByHalfAPixel) {
 
 TEST(SssAdaptiveLasting, TakesFewSamplesAgainOnceItIsNoLongerDarkAround) {
     const auto count = [](float dark) {
-        LookRunner look(step("sss_adaptive", "", 12), gpu::Backend::software, {kSamples});
+        LookRunner look(step("sss_adaptive", "", 12), gpu::test_backend(), {kSamples});
         double samples = 0;
         for (int frame = 1; frame <= 48; ++frame)
             samples = mean(look.run(at_frame(frame,
@@ -104,7 +105,7 @@ TEST(SssAdaptiveLasting, TakesFewSamplesAgainOnceItIsNoLongerDarkAround) {
 TEST(SssAdaptiveLasting, HasNumbersUpToTheHorizonOfAPlane) {
     for (int i = 0; i < 24; ++i) {
         const double horizon_px = 89.5 + 0.025 * i;
-        LookRunner look(step("sss_adaptive", "", 30), gpu::Backend::software, {"sss_adaptive.guided_whole"});
+        LookRunner look(step("sss_adaptive", "", 30), gpu::test_backend(), {"sss_adaptive.guided_whole"});
         Capture capture = at_frame(1, [](int, int, int) { return 1.0f; });
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {

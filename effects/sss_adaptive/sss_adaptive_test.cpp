@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/scattering_checks.h"
 
 namespace aftershade::test::sss_adaptive {
@@ -33,7 +34,7 @@ std::string profile() {
 }
 
 LookRunner runner(const std::string& more) {
-    return LookRunner(scattering_step(kEffect, profile(), more), gpu::Backend::software, kTaps);
+    return LookRunner(scattering_step(kEffect, profile(), more), gpu::test_backend(), kTaps);
 }
 
 constexpr const char* kUnbiased =
@@ -213,7 +214,7 @@ double rmse(const Image& a, const Image& b, double times) {
 TEST(SssAdaptive, TakesItsAverageAlongWhereLightIsOnlyDarker) {
     const Image exact = scattered(scattering_step("sss_exact", profile(), ""), shadow_edge(1));
     LookRunner look(scattering_step(kEffect, profile(), R"("guiding_weight": 0.05, "prefilter": true)"),
-                    gpu::Backend::software, {"sss_adaptive.estimate", "sss_adaptive.guided"});
+                    gpu::test_backend(), {"sss_adaptive.estimate", "sss_adaptive.guided"});
     for (int frame = 1; frame <= 20; ++frame) look.run(shadow_edge(frame));
     const FrameResult result = look.run(shadow_edge(21, 0.1f));
     const double guided = rmse(result.images.at("irradiance"), exact, 0.1),
@@ -311,10 +312,10 @@ TEST(SssAdaptive, KeepsLightAsItIsWhereItDoesNotLeaveItsPixel) {
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) capture.images.at("depth").at(x, y, 0) = 1 + float(x);
     const std::string narrow = burley_of_px(2, 1, 0.5, kWidth);
-    const Image plan = LookRunner(scattering_step(kEffect, narrow, R"("distant_fade": false)"),
-                                  gpu::Backend::software, kTaps)
-                           .run(capture)
-                           .taps.at("sss_adaptive.plan");
+    const Image plan =
+        LookRunner(scattering_step(kEffect, narrow, R"("distant_fade": false)"), gpu::test_backend(), kTaps)
+            .run(capture)
+            .taps.at("sss_adaptive.plan");
     // Half a pixel is 0.5 * depth px of the plane 1 m away, d is 2 px there: 8.129 * 2 / 0.5 m.
     const double depth_m = 8.129 * 2 / 0.5;
     for (int x = 0; x < kWidth; ++x) {

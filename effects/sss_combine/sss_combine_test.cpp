@@ -40,7 +40,7 @@ std::string with(const std::string& effect, const std::string& texturing, const 
 
 /// "scatter" stands for an effect that scatters: half the light, and half the next pixel's. From column 16 on
 /// it leaves the light as it is.
-class SssCombine : public gpu::OnSoftware {
+class SssCombine : public gpu::OnEachBackend {
 protected:
     SssCombine() {
         effects_.add("scatter",
@@ -183,7 +183,7 @@ TEST_P(SssCombine, MakesTheRenderersPictureOfItsScatteredLight) {
     EXPECT_GT(farthest, 0.1) << "the scene scatters";
 }
 
-ON_SOFTWARE_BACKENDS(SssCombine);
+ON_EACH_BACKEND(SssCombine);
 
 }  // namespace
 }  // namespace aftershade::test::sss_combine

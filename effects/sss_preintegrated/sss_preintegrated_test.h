@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "framework/scene/scene_renderer.h"
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/reference/burley.h"
 #include "tests/scene/scene_text.h"
@@ -22,7 +23,7 @@ constexpr double kPi = 3.14159265358979323846;
 inline Image scattered(const Capture& capture, const std::string& params) {
     LookRunner runner(
         R"({"aftershade": 1, "steps": [{"effect": "sss_preintegrated", "params": {)" + params + "}}]}",
-        gpu::Backend::software, {"sss_preintegrated.irradiance"});
+        gpu::test_backend(), {"sss_preintegrated.irradiance"});
     return runner.run(capture).taps.at("sss_preintegrated.irradiance");
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
@@ -27,7 +28,7 @@ TEST(SssPrepare, MultipliesLightByThePartOfTheAlbedoThatScatters) {
         LookRunner runner(
             R"({"aftershade": 1, "steps": [{"effect": "sss_prepare", "params": {"texturing": ")" +
                 std::string(texturing) + R"("}}]})",
-            gpu::Backend::software, {"sss_prepare.irradiance"});
+            gpu::test_backend(), {"sss_prepare.irradiance"});
         const Image light = runner.run(capture).taps.at("sss_prepare.irradiance");
         for (int y = 0; y < 8; ++y)
             for (int x = 0; x < 24; ++x)

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/reference/burley.h"
 #include "tests/scattering_checks.h"
@@ -110,7 +111,7 @@ TEST(SssSeparable, HasThePublishedTablesOfTheArtistKernel) {
     for (const Table& table : tables) {
         const std::string samples = std::to_string(2 * table.size() - 1);
         LookRunner runner(look(kArtist, R"(, "kernel": "artist", "samples": )" + samples),
-                          gpu::Backend::software, {"sss_separable.half_kernel"});
+                          gpu::test_backend(), {"sss_separable.half_kernel"});
         const Image kernel = runner.run(facing_plane(8, 8, [](double, double) { return 1.0; }))
                                  .taps.at("sss_separable.half_kernel");
         for (int i = 0; i < int(table.size()); ++i)
@@ -245,7 +246,7 @@ double nearness_to_exact(const std::string& more) {
     const std::string exact =
         R"({ "aftershade": 1, "steps": [ { "effect": "sss_exact", "params": { "scattering_profile": )" +
         burley(4) + " } } ] }";
-    const Image expected = LookRunner(exact, gpu::Backend::software).run(capture).images.at("irradiance");
+    const Image expected = LookRunner(exact, gpu::test_backend()).run(capture).images.at("irradiance");
     double sum = 0, count = 0;
     for (int y = 0; y < 96; ++y)
         for (int x = 0; x < 128; ++x) {

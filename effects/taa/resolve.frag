@@ -139,9 +139,23 @@ vec4 held(vec4 history, Box box, float least_weight, out float part) {
 #ifdef HAS_LIGHT_CHANGE
 // Light that is shifted with its surface's change lags by less, but highlights and hard shadows in what does not scatter lag
 // as before: so many frames of history as let that be kLag of the light, and a share of the contrast of the 3 x 3 px, which
-// history is there to smooth.
+// history is there to smooth. Highlights move where scattered light hardly does: on a face beside its brightest part, which
+// has no change of its own. So the greatest change within kNearPx counts.
 const float kLag = 0.002;
 const float kLagOfContrast = 0.02;
+const float kNearPx = 12.0;
+
+vec3 change_at(vec2 place) { return textureLod(light_change, place * light_change_size.zw, 0.0).rgb; }
+
+float greatest_change(vec3 change) {
+    vec3 away = abs(change - 1.0);
+    for (int i = 0; i < 8; ++i) {
+        float angle = 0.7853982 * float(i);
+        vec3 other = change_at(gl_FragCoord.xy + kNearPx * vec2(cos(angle), sin(angle)));
+        if (is_light(vec4(other, 1.0))) away = max(away, abs(other - 1.0));
+    }
+    return max(max(away.r, away.g), away.b);
+}
 
 float frames_in_change(Samples samples, vec3 change) {
     float sum = 0.0, squares = 0.0, count = 1e-20;
@@ -152,8 +166,7 @@ float frames_in_change(Samples samples, vec3 change) {
         count += samples.usable[i] ? 1.0 : 0.0;
     }
     float mean = sum / count, contrast = sqrt(max(squares / count - mean * mean, 0.0)) / max(mean, 1e-10);
-    vec3 away = abs(change - 1.0);
-    return (kLag + kLagOfContrast * contrast) / max(max(away.r, max(away.g, away.b)), 1e-6);
+    return (kLag + kLagOfContrast * contrast) / max(greatest_change(change), 1e-6);
 }
 #endif
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "framework/capture/capture.h"
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
@@ -20,7 +21,7 @@ class TaaRun {
 public:
     explicit TaaRun(const std::string& params = "")
         : runner_(R"({"aftershade": 1, "steps": [{"effect": "taa", "params": {)" + params + "}}]}",
-                  gpu::Backend::software, {"taa.motion", "taa.age"}) {}
+                  gpu::test_backend(), {"taa.motion", "taa.age"}) {}
 
     /// Of the next frame; `cut`: it begins a shot.
     const FrameResult& next(const Capture& capture, bool cut = false) {

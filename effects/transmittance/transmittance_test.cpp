@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
@@ -45,7 +46,7 @@ Capture thin() {
 Image transmitted(const Capture& capture, const std::string& params = "") {
     LookRunner runner(
         R"({"aftershade": 1, "steps": [{"effect": "transmittance", "params": {)" + params + "}}]}",
-        gpu::Backend::software, {"transmittance.irradiance"});
+        gpu::test_backend(), {"transmittance.irradiance"});
     return runner.run(capture).taps.at("transmittance.irradiance");
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/scene/scene_renderer.h"
+#include "tests/backends.h"
 #include "tests/camera_pose.h"
 #include "tests/crop.h"
 #include "tests/look_runner.h"
@@ -22,7 +23,7 @@ class VelocityRunner {
 public:
     explicit VelocityRunner(const std::string& step = "")
         : runner_(R"({"aftershade": 1, "steps": [{"effect": "velocity_from_camera")" + step + "}]}",
-                  gpu::Backend::software, {"velocity_from_camera.velocity"}) {}
+                  gpu::test_backend(), {"velocity_from_camera.velocity"}) {}
     Image run(const Capture& capture, bool begins_shot = false) {
         FrameInputs frame;
         frame.capture = &capture;

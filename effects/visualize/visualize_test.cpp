@@ -13,6 +13,7 @@
 
 #include "effects/visualize/visualize_test.h"
 #include "framework/compare/metrics.h"
+#include "tests/backends.h"
 #include "tests/crop.h"
 
 namespace aftershade::test::visualize {
@@ -150,7 +151,7 @@ Capture lens_capture(int width, int height) {
 TEST(Visualize, ATextureOfAnEarlierStepArrivesExactly) {
     LookRunner runner(
         look(R"("show": "signed", "max": 6, "legend": false)", R"(, "in": {"image": "dof.coc"})", kLens),
-        gpu::Backend::software, {"dof.coc"});
+        gpu::test_backend(), {"dof.coc"});
     const FrameResult result = runner.run(lens_capture(64, 36));
     const Image& coc = result.taps.at("dof.coc");
     bool front = false, behind = false;
@@ -168,7 +169,7 @@ TEST(Visualize, ATextureOfAnEarlierStepArrivesExactly) {
 void expect_tiles(int width, int height, const std::string& texel) {
     LookRunner runner(look(R"("show": "signed", "channel": "g", "max": 6, "legend": false)" + texel,
                            R"(, "in": {"image": "dof.tile_coc"})", kLens),
-                      gpu::Backend::software, {"dof.tile_coc"});
+                      gpu::test_backend(), {"dof.tile_coc"});
     const FrameResult result = runner.run(lens_capture(width, height));
     const Image& tiles = result.taps.at("dof.tile_coc");
     ASSERT_EQ(tiles.width(), (width + 15) / 16);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/image/false_color.h"
+#include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
 
@@ -20,7 +21,7 @@ inline std::string look(const std::string& params, const std::string& rest = "",
 
 inline Image shown(const Capture& capture, const std::string& params, const std::string& rest = "",
                    const std::string& before = "") {
-    return LookRunner(look(params, rest, before), gpu::Backend::software).run(capture).images.at("display");
+    return LookRunner(look(params, rest, before), gpu::test_backend()).run(capture).images.at("display");
 }
 
 inline DisplayColor at(const Image& image, int x, int y) {

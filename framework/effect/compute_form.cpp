@@ -18,9 +18,10 @@ namespace {
 constexpr std::string_view kFragCoord = "as_FragCoord";
 constexpr std::string_view kDrawMain = "aftershade_draw_pixel";
 
-/// Before the text, which may read gl_FragCoord where it initialises a global variable.
+/// Before the text, which may read gl_FragCoord where it initialises a global variable. `precise`: compilers
+/// would add the 0.5 to constants of the author's.
 constexpr const char* kComputeHead = R"(layout(local_size_x = $side, local_size_y = $side) in;
-vec4 as_FragCoord = vec4(vec2(gl_GlobalInvocationID.xy) + 0.5, 0.0, 1.0);
+precise vec4 as_FragCoord = vec4(vec2(gl_GlobalInvocationID.xy) + 0.5, 0.0, 1.0);
 bool aftershade_is_discarded = false;
 )";
 
@@ -56,13 +57,21 @@ void main() {
 )";
 
 /// Of fragment shaders alone.
-constexpr std::array<std::string_view, 12> kDerivatives = {
-    "dFdx",       "dFdy",     "fwidth",         "dFdxFine",             "dFdyFine",            "fwidthFine",
-    "dFdxCoarse", "dFdyCoarse", "fwidthCoarse", "interpolateAtCentroid", "interpolateAtSample",
-    "interpolateAtOffset"};
+constexpr std::array<std::string_view, 12> kDerivatives = {"dFdx",
+                                                           "dFdy",
+                                                           "fwidth",
+                                                           "dFdxFine",
+                                                           "dFdyFine",
+                                                           "fwidthFine",
+                                                           "dFdxCoarse",
+                                                           "dFdyCoarse",
+                                                           "fwidthCoarse",
+                                                           "interpolateAtCentroid",
+                                                           "interpolateAtSample",
+                                                           "interpolateAtOffset"};
 /// Functions that choose a level by derivatives; a macro may call one.
-constexpr std::array<std::string_view, 5> kLevelByDerivatives = {
-    "texture", "textureOffset", "textureProj", "textureProjOffset", "textureQueryLod"};
+constexpr std::array<std::string_view, 5> kLevelByDerivatives = {"texture", "textureOffset", "textureProj",
+                                                                 "textureProjOffset", "textureQueryLod"};
 
 class ComputeForm {
 public:
@@ -177,15 +186,17 @@ private:
         for (std::size_t i = 0; i < outputs_.size(); ++i) {
             const gpu::TextureFormat format = shape_.targets[i];
             const std::string target = "aftershade_target_" + std::to_string(i);
-            const std::string_view prefix =
-                !gpu::is_integer(format) ? "" : gpu::is_signed_integer(format) ? "i" : "u";
+            const std::string_view prefix = !gpu::is_integer(format)         ? ""
+                                            : gpu::is_signed_integer(format) ? "i"
+                                                                             : "u";
             source_.text += "layout(binding = " + std::to_string(shape_.first_target_unit + int(i)) + ", " +
                             std::string(gpu::texture_format_name(format)) + ") restrict writeonly uniform " +
                             std::string(prefix) + "image2D " + target + ";\n";
-            stores += "    imageStore(" + target + ", aftershade_at, aftershade_texel(" + outputs_[i] + "));\n";
+            stores +=
+                "    imageStore(" + target + ", aftershade_at, aftershade_texel(" + outputs_[i] + "));\n";
         }
         source_.text += shape_.tile_runs ? filled(kDrawnTiles, {{"binding", std::to_string(kTilesBinding)},
-                                                           {"runs", *shape_.tile_runs}})
+                                                                {"runs", *shape_.tile_runs}})
                                          : kDrawnWhole;
         source_.text += kComputeMain + stores + "}\n";
     }

@@ -69,8 +69,8 @@ private:
         if (pass_.kind == PassKind::copy) check_copy();
         if (!draws() && pass_.blend != gpu::Blend::none) fail("blends, but draws nothing");
         if (pass_.program && pass_.program->is_compute() != pass_.computes())
-            fail(fmt::format("{}, but its program '{}' does the other", pass_.computes() ? "computes" : "draws",
-                             pass_.program->label()));
+            fail(fmt::format("{}, but its program '{}' does the other",
+                             pass_.computes() ? "computes" : "draws", pass_.program->label()));
     }
 
     void check_copy() const {

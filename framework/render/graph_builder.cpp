@@ -86,7 +86,8 @@ GraphBuilder::GraphBuilder(const GraphTools& tools, const GraphFrame& frame)
       programs_({tools.context, tools.programs, tools.status,
                  tools.options.fuses_passes && !tools.options.wants_each_pass(), !tools.options.keeps_steps,
                  tools.options.keeps_steps || tools.programs.is_guarding_loops(),
-                 tools.options.compile_threads, tools.options.draw_with == DrawWith::compute}),
+                 tools.options.compile_threads, tools.options.draw_with == DrawWith::compute,
+                 !tools.options.plain}),
       built_(std::make_unique<BuiltGraph>()) {}
 
 std::unique_ptr<BuiltGraph> GraphBuilder::build() {

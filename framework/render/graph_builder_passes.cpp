@@ -225,7 +225,8 @@ std::vector<std::byte> GraphBuilder::tiles_block(const StepBuild& build, const P
     Std140Writer block;
     block.add(std::span<const float>(grid));
     block.add(std::int32_t(side));
-    for (const float texels : listed_size(build, list)) block.add(std::int32_t((int(texels) + side - 1) / side));
+    for (const float texels : listed_size(build, list))
+        block.add(std::int32_t((int(texels) + side - 1) / side));
     return block.finish();
 }
 

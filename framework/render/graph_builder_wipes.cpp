@@ -69,7 +69,8 @@ bool overwrites_tiles(const EffectManifest& manifest, const PassSpec& spec,
 /// place tiles by anything.
 void GraphBuilder::add_wipes(const StepBuild& build, const PassSpec& spec, const PassBindings& bindings,
                              graph::Pass& pass) {
-    if (spec.over.empty() || !spec.vertex.empty() || !tools_.context.info().software) return;
+    if (spec.over.empty() || !spec.vertex.empty() || !tools_.context.info().software || tools_.options.plain)
+        return;
     const TileListSpec& list = *build.manifest().find_tile_list(spec.over);
     const auto runs = std::ranges::find(bindings.buffers, list.runs(), &AccessSpec::name);
     const auto& places = pass.buffers[std::size_t(runs - bindings.buffers.begin())];

@@ -192,7 +192,7 @@ std::vector<PassPrograms::FusedAssembled> PassPrograms::assemble_fusions(const g
 PassPrograms::Form PassPrograms::with_loads(const graph::FrameGraph& graph, const graph::Pass& pass,
                                             ProgramSources sources, int first_unit) const {
     Form form{nullptr, pass.images};
-    if (const int units = tools_.context.info().load_units; units > 0) {
+    if (const int units = tools_.loads_images ? tools_.context.info().load_units : 0; units > 0) {
         std::map<int, gpu::TextureFormat> formats;
         for (const graph::Read& read : pass.reads)
             formats[read.binding] = graph.textures()[std::size_t(read.texture.texture)].desc.format;
@@ -229,8 +229,7 @@ std::optional<ProgramSources> PassPrograms::in_compute(const graph::FrameGraph& 
     };
     DrawShape shape;
     shape.first_target_unit = int(pass.images.size());
-    for (const graph::Target& target : pass.targets)
-        shape.targets.push_back(desc_of(target.texture).format);
+    for (const graph::Target& target : pass.targets) shape.targets.push_back(desc_of(target.texture).format);
     shape.has_levels = std::ranges::any_of(pass.reads, [&](const graph::Read& read) {
         return read.level < 0 && desc_of(read.texture).mips > 1;
     });
@@ -249,7 +248,8 @@ void PassPrograms::assemble_forms(const graph::FrameGraph& graph, const graph::P
     const int first_unit = int(pass.images.size());
     if (tools_.computes && !sources.is_compute)
         if (auto computes = in_compute(graph, pass, sources, shader, texts.why_drawn)) {
-            texts.compute = with_loads(graph, pass, std::move(*computes), first_unit + int(pass.targets.size()));
+            texts.compute =
+                with_loads(graph, pass, std::move(*computes), first_unit + int(pass.targets.size()));
             texts.compute->first_target_unit = first_unit;
         }
     texts.own = with_loads(graph, pass, std::move(sources), first_unit);

@@ -33,8 +33,9 @@ public:
         /// Whether passes that nothing needs get programs, too, so that the faults of their shaders are
         /// found.
         bool compiles_culled = false;
-        int compile_threads = 0;  ///< beside the caller's
-        bool computes = false;    ///< draws become compute shaders where they can
+        int compile_threads = 0;   ///< beside the caller's
+        bool computes = false;     ///< draws become compute shaders where they can
+        bool loads_images = true;  ///< fetches become loads from images where that is faster
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 

@@ -65,7 +65,8 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
       natives_(natives),
       options_(options) {
     options_.draw_with = chosen_draw_with(context_, options.draw_with, *programs_);
-    options_.compile_threads = CompileAhead::useful_threads(context_, options.compile_threads);
+    options_.compile_threads =
+        options.plain ? 0 : CompileAhead::useful_threads(context_, options.compile_threads);
     const bool guards = options.guards_loops || options.audits;
     if (!guards || context_.info().renderer.find("llvmpipe") == std::string::npos) return;
     loop_guard_.emplace(context_, sizeof(std::uint32_t), "loop guard");
@@ -118,11 +119,12 @@ void PipelineRenderer::build(const FrameInputs& frame, const std::vector<std::st
 
 bool PipelineRenderer::can_build_ahead() const {
     const bool reports = status_ && status_->active();
-    return !built_ && !reports && std::ranges::none_of(pipeline_.steps, [](const PipelineStep& step) {
-        return step.manifest->native || std::ranges::any_of(step.values, [](const auto& value) {
-                   return !roles_of(value.second).empty();
-               });
-    });
+    return !built_ && !reports && !options_.plain &&
+           std::ranges::none_of(pipeline_.steps, [](const PipelineStep& step) {
+               return step.manifest->native || std::ranges::any_of(step.values, [](const auto& value) {
+                          return !roles_of(value.second).empty();
+                      });
+           });
 }
 
 void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles) {

@@ -36,13 +36,6 @@ struct FrameResult {
     std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
 };
 
-/// How a draw runs.
-struct DrawnPass {
-    std::string pass;
-    bool computes = false;  ///< as a compute shader
-    std::string why_drawn;  ///< why not, where that is wanted
-};
-
 /// A frame graph for one size and one choice of passes (framework/render/built_graph.h).
 struct BuiltGraph;
 struct FrameBefore;

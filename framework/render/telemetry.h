@@ -45,6 +45,13 @@ struct FrameTelemetry {
     std::vector<graph::PassTime> passes;
 };
 
+/// How a draw runs.
+struct DrawnPass {
+    std::string pass;
+    bool computes = false;  ///< as a compute shader
+    std::string why_drawn;  ///< why not, where that is wanted
+};
+
 /// One JSON object: {"aftershade": 1, "frame": 12, "steps": {"sss_adaptive": {"samples": {"mean": ...}}},
 /// "memory": {"textures": {"rgba32f": {"count": 7, "bytes": 123}}, ...}, "passes_ms": {...}}.
 /// Passes of one name are added up. A histogram is {"from", "to", "counts"}.

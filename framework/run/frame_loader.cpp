@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/memory_limit.h"
 #include "framework/capture/capture_window.h"
+#include "framework/file/exr_file.h"
 #include "framework/image/role.h"
 #include "framework/look/pixel_shape.h"
 #include "framework/run/nan_policy.h"
@@ -42,6 +45,24 @@ Window region_with_margin(const RunOptions& run, const std::optional<RegionNeeds
             display.min_y + (part.min_y - display.min_y) * divisor,
             display.min_x + (part.max_x + 1 - display.min_x) * divisor - 1,
             display.min_y + (part.max_y + 1 - display.min_y) * divisor - 1};
+}
+
+std::uint64_t bytes_of(const Capture& capture) {
+    std::uint64_t bytes = 0;
+    for (const auto& [role, image] : capture.images)
+        bytes +=
+            std::uint64_t(image.width()) * std::uint64_t(image.height()) * image.channels() * sizeof(float);
+    return bytes;
+}
+
+/// A file has parts for about four cores at once; results to be written take about as much as captures.
+int frames_ahead_of(const RunOptions& run, const Capture& capture) {
+    if (run.frames_ahead > 0) return run.frames_ahead;
+    constexpr int kCoresOfAFrame = 4, kMost = 8, kPartOfMemory = 8;
+    const std::uint64_t room = address_space_left().value_or(machine_memory_bytes()) / kPartOfMemory;
+    const auto fit = std::uint64_t(exr_threads() / kCoresOfAFrame);
+    return int(std::clamp<std::uint64_t>(std::min(fit, room / std::max<std::uint64_t>(1, bytes_of(capture))),
+                                         1, kMost));
 }
 
 /// Adds how long it lived.
@@ -168,18 +189,26 @@ FrameLoader::CapturePointer FrameLoader::take(std::size_t index, int subframe) {
     // What comes next is read while this one is worked on; what no longer matters is let go.
     std::vector<int> wanted = files_.numbers(frame);
     if (!last_of_frame) request(files_.number(frame, subframe + 1));
-    else if (index + 1 < run_.frames.size() && !is_missing(index + 1)) {
-        const std::vector<int> next = files_.numbers(run_.frames[index + 1]);
-        request(next.front());
-        wanted.insert(wanted.end(), next.begin(), next.end());
-    }
+    else request_next(index, wanted);
     const CapturePointer current = holds ? held(index) : get(file);
     std::erase_if(reads_, [&](const auto& read) {
         return std::find(wanted.begin(), wanted.end(), read.first) == wanted.end() ||
                (subframe_count() > 1 && read.first <= file && read.first >= files_.number(frame, 0));
     });
     if (!holds && last_of_frame) last_ = current;
+    frames_ahead_ = frames_ahead_of(run_, *current);
     return current;
+}
+
+/// Of frames behind the next one that lie in many files, the first alone is read ahead.
+void FrameLoader::request_next(std::size_t index, std::vector<int>& wanted) {
+    const std::size_t end = std::min(run_.frames.size(), index + 1 + std::size_t(frames_ahead_));
+    for (std::size_t next = index + 1; next < end; ++next) {
+        if (is_missing(next)) continue;
+        const std::vector<int> files = files_.numbers(run_.frames[next]);
+        request(files.front());
+        wanted.insert(wanted.end(), files.begin(), files.end());
+    }
 }
 
 FrameLoader::Neighbours FrameLoader::neighbours(std::size_t index) {

@@ -42,6 +42,8 @@ public:
     /// Those of the same shot that some input wants and whose files are there.
     Neighbours neighbours(std::size_t index);
     bool begins_shot(std::size_t index) const;
+    /// RunOptions::frames_ahead, or the number it stands for once a frame is read; 1 before.
+    int frames_ahead() const { return frames_ahead_; }
     /// Objects of the look in the frames that were read so far.
     ObjectMatches& objects() { return objects_; }
     /// Time of reading and decoding so far, over all threads.
@@ -54,6 +56,7 @@ private:
     /// Region, scale and number of the frame.
     void place(Capture& capture, int file) const;
     CapturePointer held(std::size_t index) const;
+    void request_next(std::size_t index, std::vector<int>& wanted);
 
     const Sequence& sequence_;
     const CaptureReader& reader_;
@@ -64,6 +67,7 @@ private:
     std::optional<RegionNeeds> region_needs_;
     std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
     CapturePointer last_;
+    int frames_ahead_ = 1;
     mutable std::atomic<double> busy_ms_ = 0;
     mutable ObjectMatches objects_;
 };

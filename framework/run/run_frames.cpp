@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <future>
@@ -91,10 +92,10 @@ Written write_frame(const RunSetup& setup, const OutputOptions& outputs, const F
     return written;
 }
 
-/// The files of one frame, written while the next one is rendered.
+/// The files of one frame, written while others are rendered.
 struct PendingWrite {
     int frame = 0;
-    std::future<Written> files{};
+    std::shared_future<Written> files{};
     std::string message{};  ///< for reports
 };
 
@@ -185,7 +186,7 @@ public:
         report_.history_saved = !run.history_out.empty() && any_rendered_ && !report_.interrupted;
         // Frees memory while the last files are packed; a history is saved once they are there.
         if (!report_.history_saved) end_gl_();
-        finish_write();
+        finish_writes();
         if (report_.history_saved)
             renderer_.save_history(run.history_out,
                                    setup_.hooks.last_fingerprint ? setup_.hooks.last_fingerprint() : "");
@@ -215,7 +216,7 @@ private:
         try {
             frame = frame_run_.render(index, wanted(), report_, observer_);
         } catch (const Error& error) {
-            if (error.kind() != ErrorKind::memory) finish_write();
+            if (error.kind() != ErrorKind::memory) finish_writes();
             if (error.kind() != ErrorKind::capture) throw;
             if (!warms_up(index)) outcomes_.failed(number, error);
             else if (observer_.frame_failed) observer_.frame_failed(error.what());
@@ -223,7 +224,7 @@ private:
             return;
         }
         report_frame(frame, begin);
-        finish_write();
+        finish_writes(most_writes() - 1);
         if (warms_up(index) || (hooks.is_written && !hooks.is_written(number)))
             report_.frames_unwritten += warms_up(index) ? 0 : 1;
         else if (accept_outputs(frame, setup_.options.on_nan, report_, observer_, outcomes_))
@@ -244,31 +245,42 @@ private:
         if (frame.result->telemetry) report_.telemetry.push_back(*frame.result->telemetry);
     }
 
-    /// The files of the frame are written while the next one is rendered.
+    /// A pipe takes frames in their order.
+    std::size_t most_writes() const {
+        return setup_.outputs.stream ? 1 : std::size_t(loader_.frames_ahead());
+    }
+
+    /// The files of the frame are written while the next ones are rendered.
     void write_later(const FrameRun::Rendered& frame, int number, Clock::time_point begin) {
         OutputOptions outputs = setup_.outputs;
         outputs.renderer = report_.gl.renderer;
         if (setup_.hooks.fingerprint) outputs.fingerprint = setup_.hooks.fingerprint(number);
-        const auto write = [frame, number, begin, outputs = std::move(outputs), &setup = setup_] {
+        const auto before = pending_.empty() ? std::shared_future<Written>() : pending_.back().files;
+        const auto write = [frame, number, begin, before, outputs = std::move(outputs), &setup = setup_] {
             Written written = write_frame(setup, outputs, *frame.result, *frame.capture);
+            if (before.valid()) before.wait();
             if (setup.hooks.frame_written)
                 setup.hooks.frame_written(number, written.files.paths, milliseconds_since(begin) / 1000);
             return written;
         };
-        pending_ = {number, std::async(std::launch::async, write), frame.message};
+        pending_.push_back({number, std::async(std::launch::async, write).share(), frame.message});
     }
 
-    /// Waits for the files of the frame before, if there is one, and reports them.
-    void finish_write() {
-        if (!pending_.files.valid()) return;
-        const auto start = Clock::now();
-        const Written written = pending_.files.get();
-        report_.write_ms += milliseconds_since(start);
-        report_.encode_ms += written.milliseconds;
-        if (!written.files.warnings.empty()) note_non_finite(pending_.frame, report_);
-        if (observer_.non_finite) std::ranges::for_each(written.files.warnings, observer_.non_finite);
-        say_cut(written.files);
-        outcomes_.done(pending_.frame, written.files.paths, pending_.message);
+    /// Waits for the files of earlier frames until no more than `left` frames are being written, and reports
+    /// them in their order.
+    void finish_writes(std::size_t left = 0) {
+        while (pending_.size() > left) {
+            const PendingWrite oldest = std::move(pending_.front());
+            pending_.pop_front();
+            const auto start = Clock::now();
+            const Written& written = oldest.files.get();
+            report_.write_ms += milliseconds_since(start);
+            report_.encode_ms += written.milliseconds;
+            if (!written.files.warnings.empty()) note_non_finite(oldest.frame, report_);
+            if (observer_.non_finite) std::ranges::for_each(written.files.warnings, observer_.non_finite);
+            say_cut(written.files);
+            outcomes_.done(oldest.frame, written.files.paths, oldest.message);
+        }
     }
 
     /// Once a run.
@@ -289,7 +301,7 @@ private:
     FrameRun frame_run_;
     Outcomes outcomes_;
     std::function<void()> end_gl_;
-    PendingWrite pending_;
+    std::deque<PendingWrite> pending_;
     bool any_rendered_ = false;
     bool is_cut_said_ = false;
 };

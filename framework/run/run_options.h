@@ -34,7 +34,9 @@ struct RunOptions {
     NanPolicy on_nan = NanPolicy::warn;
     bool stop_on_error = false;  ///< the first frame that fails ends the run
     RendererOptions drawing{};
-    int scale_divisor = 1;                ///< frames are rendered at 1/this of their size
+    int frames_ahead = 0;   ///< that are read, and that are written, while one is worked on; 0: a quarter of
+                            ///< the cores, 8 at most, as far as memory has room
+    int scale_divisor = 1;  ///< frames are rendered at 1/this of their size
     std::optional<Window> region;         ///< px of the display window at full scale, from its top left
     std::optional<int> region_margin_px;  ///< rendered around the region, and not written; nullopt: what it
                                           ///< needs (framework/look/reach.h)

@@ -1,10 +1,11 @@
 """sss_adaptive where light, shadows and the camera move, and in its first frame; part of `scripts/quality sss-adaptive`."""
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy
 
+from measure.exr import read_rgb64
 from measure.measures import LUMINANCE, Array, luminance_psnr_db, scale_of
 from measure.pages import Rows
 from measure.scenes import load
@@ -88,6 +89,27 @@ def largest_step(picture: Array, where: Array, scale: float) -> float:
                for a in (0, 1))
 
 
+def inner(where: Array) -> Array:
+    """Pixels whose 5 x 5 px all scatter: elsewhere taa smooths outlines, which the reference does not."""
+    padded = numpy.pad(where, 2, constant_values=True)
+    height, width = where.shape
+    return numpy.all([padded[y:y + height, x:x + width] for y in range(5) for x in range(5)], axis=0)
+
+
+def lost_to_taa(capture: Path, profile: Document, exact: Array, shown: range, scale: float, where: Sequence[Array]) -> list[float]:
+    """dB of each frame: the picture with scattered light against the same after taa."""
+    colors = lambda *after: run("taa", capture, profile, {}, len(where), taps=(), after=({"effect": "sss_combine"}, *after), roles="color")["color"]
+    light = run("taa", capture, profile, {}, len(where), taps=())["irradiance"]
+    alone, followed = colors(), colors({"effect": "taa"})
+    lost = []
+    for i, file in enumerate(sorted(capture.parent.glob("*.exr"))):
+        if i not in shown:
+            continue
+        truth = alone[i] + read_rgb64(file, "albedo") * (exact[i] - light[i])
+        lost.append(luminance_psnr_db(truth, alone[i], inner(where[i]), scale) - luminance_psnr_db(truth, followed[i], inner(where[i]), scale))
+    return lost
+
+
 def moving() -> Rows:
     rows = []
     for index, (label, (scene, make)) in enumerate(SCENES.items()):
@@ -104,8 +126,10 @@ def moving() -> Rows:
         decibels = lambda result: [luminance_psnr_db(exact[i], result["irradiance"][i], where[i], scale) for i in shown]
         of_own, of_fixed, of_alone = decibels(own), decibels(fixed), decibels(alone)
         step = max(largest_step(own["irradiance"][i], where[i], scale) / largest_step(exact[i], where[i], scale) for i in shown)
+        lost = lost_to_taa(capture, profile, exact, shown, scale, where)
         rows.append([label, f"{count:.1f}", *[f"{numpy.mean(d):.1f}" for d in (of_own, of_fixed, of_alone)],
-                     f"{min(a - b for a, b in zip(of_own, of_fixed)):.1f}", f"{min(a - b for a, b in zip(of_own, of_alone)):.1f}", f"{step:.2f}"])
+                     f"{min(a - b for a, b in zip(of_own, of_fixed)):.1f}", f"{min(a - b for a, b in zip(of_own, of_alone)):.1f}", f"{step:.2f}",
+                     f"{numpy.mean(lost):.2f}", f"{max(lost):.2f}"])
         print("moving", rows[-1], flush=True)
     return rows
 

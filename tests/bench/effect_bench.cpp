@@ -18,6 +18,7 @@
 #include "framework/gpu/context.h"
 #include "framework/look/look.h"
 #include "framework/render/renderer.h"
+#include "tests/backends.h"
 
 #include <glad/gl.h>
 
@@ -161,7 +162,7 @@ int run() {
     std::vector<std::filesystem::path> folders;
     for (const std::string folder : job.at("effects")) folders.emplace_back(folder);
     EffectRegistry effects(folders);
-    gpu::Context context(gpu::Backend::software);
+    gpu::Context context(gpu::test_backend());
     gpu::Buffer counts(context, kCountWords * sizeof(std::uint32_t), "counts");
     json results = json::array();
     std::optional<Capture> read;

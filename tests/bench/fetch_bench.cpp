@@ -20,6 +20,7 @@
 #include "framework/gpu/context.h"
 #include "framework/look/look.h"
 #include "framework/render/renderer.h"
+#include "tests/backends.h"
 #include "tests/bench/cache_model.h"
 
 #include <glad/gl.h>
@@ -110,7 +111,7 @@ public:
             diagnostics.print(faults);
             throw std::runtime_error(faults.str());
         }
-        gpu::Context context(gpu::Backend::software);
+        gpu::Context context(gpu::test_backend());
         gpu::Buffer records(context, kBufferBytes, "records");
         PipelineRenderer renderer(context, pipeline, job_.at("data").get<std::string>());
         Capture capture = read_capture();

@@ -33,7 +33,7 @@ std::vector<Vec4> random_inputs(float low, float high) {
 }
 
 class ParamResourcesOn : public test::ParamResourcesOn {};
-ON_SOFTWARE_BACKENDS(ParamResourcesOn);
+ON_EACH_BACKEND(ParamResourcesOn);
 
 ParamSpec curve_spec() {
     return spec_of(R"({"type": "curve", "domain": [-2, 3], "default": [[0, 0]], "doc": "."})", "falloff");

@@ -108,7 +108,7 @@ TEST(ParamTypes, OfATableEntryAreDeclaredToShaders) {
 }
 
 class ParamTypesOn : public test::ParamResourcesOn {};
-ON_SOFTWARE_BACKENDS(ParamTypesOn);
+ON_EACH_BACKEND(ParamTypesOn);
 
 TEST_P(ParamTypesOn, OfATableEntryAreReadByShaders) {
     const ParamSpec spec = steps_spec();

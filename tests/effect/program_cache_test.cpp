@@ -64,7 +64,7 @@ protected:
         return manifest.value_or(EffectManifest{});
     }
 };
-ON_SOFTWARE_BACKENDS(ProgramCacheOn);
+ON_EACH_BACKEND(ProgramCacheOn);
 
 TEST_P(ProgramCacheOn, CompilesComputeInstancesAndAtomics) {
     ProgramCache programs(context(), kSource / "glsl", ProgramStore());

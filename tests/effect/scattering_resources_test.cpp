@@ -18,7 +18,7 @@ using test::value_of;
 using test::Vec4;
 
 class ObjectsOn : public test::ParamResourcesOn {};
-ON_SOFTWARE_BACKENDS(ObjectsOn);
+ON_EACH_BACKEND(ObjectsOn);
 
 TEST_P(ObjectsOn, SayWhetherAListHasAnObject) {
     const ParamSpec spec = spec_of(R"({"type": "objects", "default": [], "doc": "."})", "object_ids");
@@ -77,7 +77,7 @@ protected:
     ParamValue given_ = value_of(spec_, kProfiles);
     const ScatteringValue& value_ = *scattering_of(given_);
 };
-ON_SOFTWARE_BACKENDS(ScatteringResourcesOn);
+ON_EACH_BACKEND(ScatteringResourcesOn);
 
 TEST_P(ScatteringResourcesOn, FindTheProfileOfAnObject) {
     const std::vector<Vec4> objects = {{0, 0, 0, 0}, {1, 0, 0, 0}, {2, 0, 0, 0}, {3, 0, 0, 0}, {4, 0, 0, 0}};

@@ -180,7 +180,7 @@ protected:
         return drawn(program, 1, 1, {.uniforms = uniforms});
     }
 };
-ON_SOFTWARE_BACKENDS(HostBlocksOn);
+ON_EACH_BACKEND(HostBlocksOn);
 
 using Floats = std::vector<float>;
 

@@ -214,7 +214,7 @@ double u_of(int i) {
     return (i + 0.5) / kCount;
 }
 
-class BurleyShader : public gpu::OnSoftware {
+class BurleyShader : public gpu::OnEachBackend {
 protected:
     /// The largest error over max(|expected|, floor), of values by i and component.
     static double worst(const Image& got, int components, double floor,
@@ -319,7 +319,7 @@ TEST_P(BurleyShader, MapsMeanFreePathsAsTheTwin) {
     }
 }
 
-ON_SOFTWARE_BACKENDS(BurleyShader);
+ON_EACH_BACKEND(BurleyShader);
 
 }  // namespace
 }  // namespace aftershade::test

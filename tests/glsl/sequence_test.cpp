@@ -61,7 +61,7 @@ TEST(SequenceTwin, NeverGivesZeroOrOne) {
     EXPECT_EQ(reference::unit_float(0xffffffffu), 1 - 0x1p-24f);
 }
 
-class SequenceShader : public gpu::OnSoftware {
+class SequenceShader : public gpu::OnEachBackend {
 protected:
     static constexpr int kCount = 4096;
     static Image table(const std::string& expression) {
@@ -97,7 +97,7 @@ TEST_P(SequenceShader, GoesOnBitByBitAsTheTwinForMillionsOfPoints) {
     }
 }
 
-ON_SOFTWARE_BACKENDS(SequenceShader);
+ON_EACH_BACKEND(SequenceShader);
 
 }  // namespace
 }  // namespace aftershade::test

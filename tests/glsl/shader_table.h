@@ -4,6 +4,7 @@
 #include <string>
 
 #include "framework/image/image.h"
+#include "tests/backends.h"
 #include "tests/render/effect_fixture.h"
 
 namespace aftershade::test {
@@ -12,8 +13,7 @@ namespace aftershade::test {
 /// vec4 for a format of floats (rgba32f), a uvec4 for rgba32ui. `head` is text before it: includes,
 /// functions.
 inline Image shader_table(const std::string& head, const std::string& expression, int count,
-                          const std::string& format = "rgba32f",
-                          gpu::Backend backend = gpu::Backend::software) {
+                          const std::string& format = "rgba32f", gpu::Backend backend = gpu::test_backend()) {
     EffectFolder effects;
     effects.add("table",
                 R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },

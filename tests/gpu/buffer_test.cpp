@@ -12,7 +12,7 @@ static_assert(std::is_nothrow_move_constructible_v<Buffer> && std::is_nothrow_mo
 static_assert(!std::is_copy_constructible_v<Buffer> && !std::is_copy_assignable_v<Buffer>);
 
 class BufferOn : public SoftwareTest {};
-ON_SOFTWARE_BACKENDS(BufferOn);
+ON_EACH_BACKEND(BufferOn);
 
 TEST_P(BufferOn, StartsZeroFilled) {
     const Buffer buffer(context(), 7, "odd size");

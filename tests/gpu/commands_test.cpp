@@ -19,7 +19,7 @@ protected:
         draw(context(), program, whole, bindings, blend);
     }
 };
-ON_SOFTWARE_BACKENDS(DrawOn);
+ON_EACH_BACKEND(DrawOn);
 
 constexpr const char* kOne = "layout(location = 0) out vec4 c; void main() { c = vec4(1); }";
 
@@ -294,7 +294,7 @@ TEST_P(DrawOn, DropsTheFramebufferOfATextureThatDied) {
 }
 
 class DispatchOn : public SoftwareTest {};
-ON_SOFTWARE_BACKENDS(DispatchOn);
+ON_EACH_BACKEND(DispatchOn);
 
 TEST_P(DispatchOn, StoresToAnImageThatTheNextDrawReads) {
     const Texture image = texture(4, 4, TextureFormat::r32f);
@@ -371,7 +371,7 @@ void main() {
     return target.read_floats();
 }
 
-TEST(Draw, GivesTheSameBitsOnOsmesaAndOnSoftwareEgl) {
+TEST(Draw, GivesTheSameBitsOnOsmesaAndOnEachBackendEgl) {
     for (Backend backend : {Backend::egl_software, Backend::osmesa}) {
         if (const std::string reason = why_not(backend); !reason.empty()) GTEST_SKIP() << reason;
     }

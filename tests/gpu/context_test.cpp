@@ -15,7 +15,7 @@ namespace {
 static_assert(!std::is_copy_constructible_v<Context> && !std::is_move_constructible_v<Context>);
 
 class ContextOn : public SoftwareTest {};
-ON_SOFTWARE_BACKENDS(ContextOn);
+ON_EACH_BACKEND(ContextOn);
 
 TEST_P(ContextOn, PassesItsSelfTestAndSaysThatItIsSoftware) {
     const ContextInfo& info = context().info();

@@ -20,10 +20,10 @@ void main() {
 }
 )";
 
-class SoftwareTest : public OnSoftware {
+class SoftwareTest : public OnEachBackend {
 protected:
     void SetUp() override {
-        OnSoftware::SetUp();
+        OnEachBackend::SetUp();
         if (!IsSkipped()) context_ = std::make_unique<Context>(GetParam());
     }
 

@@ -72,7 +72,7 @@ flat in float value;
 layout(location = 0) out float c;
 void main() { c = value; })";
 };
-ON_SOFTWARE_BACKENDS(InstancesOn);
+ON_EACH_BACKEND(InstancesOn);
 
 TEST_P(InstancesOn, DrawsAStripOfFourVerticesForEachQuad) {
     const Program program = quads();

@@ -22,7 +22,7 @@ protected:
         draw(context(), program, {&target, 1}, bindings);
     }
 };
-ON_SOFTWARE_BACKENDS(LevelsOn);
+ON_EACH_BACKEND(LevelsOn);
 
 TEST_P(LevelsOn, DrawsToOneLevelOfOneLayerAndLeavesTheOthers) {
     Texture array(context(), {.width = 5, .height = 4, .format = TextureFormat::r32f, .layers = 3, .mips = 3},

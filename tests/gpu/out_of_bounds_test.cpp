@@ -27,7 +27,7 @@ protected:
         return values;
     }
 };
-ON_SOFTWARE_BACKENDS(OutOfBoundsOn);
+ON_EACH_BACKEND(OutOfBoundsOn);
 
 TEST_P(OutOfBoundsOn, TexelsAreZero) {
     Texture image = texture(2, 2, TextureFormat::r32f);

@@ -13,7 +13,7 @@ static_assert(std::is_nothrow_move_constructible_v<Program> && std::is_nothrow_m
 static_assert(!std::is_copy_constructible_v<Program> && !std::is_copy_assignable_v<Program>);
 
 class ProgramOn : public SoftwareTest {};
-ON_SOFTWARE_BACKENDS(ProgramOn);
+ON_EACH_BACKEND(ProgramOn);
 
 TEST_P(ProgramOn, ReportsTheLineOfAShaderError) {
     const std::string source = "layout(location = 0) out vec4 c;\nvoid main() {\n    c = vec4(parm);\n}\n";

@@ -19,7 +19,7 @@ class TextureOn : public SoftwareTest {
 protected:
     Texture make(const TextureDesc& desc) { return Texture(context(), desc, "made"); }
 };
-ON_SOFTWARE_BACKENDS(TextureOn);
+ON_EACH_BACKEND(TextureOn);
 
 std::vector<TextureFormat> all_formats() {
     std::vector<TextureFormat> formats;

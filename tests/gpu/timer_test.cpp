@@ -13,9 +13,9 @@ namespace {
 static_assert(!std::is_copy_constructible_v<Timer> && !std::is_move_constructible_v<Timer>);
 
 class TimerOn : public SoftwareTest {};
-ON_SOFTWARE_BACKENDS(TimerOn);
+ON_EACH_BACKEND(TimerOn);
 
-TEST_P(TimerOn, MeasuresWallTimeOnSoftware) {
+TEST_P(TimerOn, MeasuresWallTimeOnEachBackend) {
     EXPECT_EQ(std::string(Timer::clock_name(context())), "wall");
     Timer timer(context());
     timer.start();

@@ -12,7 +12,7 @@ namespace aftershade::graph {
 namespace {
 
 class ExecutorOn : public GraphOn {};
-ON_SOFTWARE_BACKENDS(ExecutorOn);
+ON_EACH_BACKEND(ExecutorOn);
 
 TEST_P(ExecutorOn, RunsAChainInSharedMemory) {
     const gpu::Program program = twice_plus();

@@ -53,7 +53,7 @@ private:
         copy_.reset();
     }
 };
-ON_SOFTWARE_BACKENDS(HistoryOn);
+ON_EACH_BACKEND(HistoryOn);
 
 TEST_P(HistoryOn, FollowsARecurrenceOverFiveFrames) {
     Accumulation taa = accumulation();
@@ -194,7 +194,7 @@ void main() { c = vec4(sin(gl_FragCoord.x), cos(gl_FragCoord.y), pow(gl_FragCoor
     return executor.texture(out)->read_floats();
 }
 
-TEST(Executor, GivesTheSameBitsOnOsmesaAndOnSoftwareEgl) {
+TEST(Executor, GivesTheSameBitsOnOsmesaAndOnEachBackendEgl) {
     for (const gpu::Backend backend : {gpu::Backend::egl_software, gpu::Backend::osmesa})
         if (const std::string reason = gpu::why_not(backend); !reason.empty()) GTEST_SKIP() << reason;
     const Floats egl = picture(gpu::Backend::egl_software), osmesa = picture(gpu::Backend::osmesa);

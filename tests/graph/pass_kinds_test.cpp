@@ -17,7 +17,7 @@ protected:
         return values;
     }
 };
-ON_SOFTWARE_BACKENDS(PassKindsOn);
+ON_EACH_BACKEND(PassKindsOn);
 
 TEST_P(PassKindsOn, BlendsByAddMinAndMax) {
     const gpu::Program ramp_up = draws("result = float(p.x) - 1.5;");

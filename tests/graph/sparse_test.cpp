@@ -139,7 +139,7 @@ void main() { result = 7.0; })",
         texture.upload(values);
     }
 };
-ON_SOFTWARE_BACKENDS(SparseOn);
+ON_EACH_BACKEND(SparseOn);
 
 TEST_P(SparseOn, HoldsItsClearValueWhereTheFrameDoesNotDraw) {
     const Columns columns = columns_of(2);

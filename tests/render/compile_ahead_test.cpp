@@ -52,7 +52,7 @@ protected:
     }
     EffectFolder none_;
 };
-ON_SOFTWARE_BACKENDS(CompileAheadOn);
+ON_EACH_BACKEND(CompileAheadOn);
 
 const char* const kLongLook =
     R"({ "effect": "bokeh", "params": { "f_number": 0.3 } }, { "effect": "motion_blur" },

@@ -21,11 +21,10 @@ namespace {
 
 using gpu::Backend;
 
-constexpr std::array<std::string_view, 13> kFormats = {"r8",    "rg8",   "rgba8",   "r16f",  "rg16f",
-                                                       "rgba16f", "r32f",  "rg32f",   "rgba32f", "r32ui",
+constexpr std::array<std::string_view, 13> kFormats = {"r8",      "rg8",      "rgba8", "r16f",    "rg16f",
+                                                       "rgba16f", "r32f",     "rg32f", "rgba32f", "r32ui",
                                                        "rg32ui",  "rgba32ui", "r32i"};
-constexpr std::array<std::pair<int, int>, 5> kSizes = {
-    {{1, 1}, {17, 3}, {64, 36}, {33, 20}, {5, 70}}};
+constexpr std::array<std::pair<int, int>, 5> kSizes = {{{1, 1}, {17, 3}, {64, 36}, {33, 20}, {5, 70}}};
 
 /// Choices of variant `index`, all different from call to call.
 class Choices {
@@ -46,7 +45,9 @@ std::string cast_of(std::string_view format, const std::string& vec4) {
     const std::size_t channels = format.starts_with("rgba") ? 4 : format.starts_with("rg") ? 2 : 1;
     const std::string prefix = digits.ends_with("ui") ? "u" : is_integer ? "i" : "";
     const std::string swizzle = channels == 4 ? "" : channels == 2 ? ".rg" : ".r";
-    const std::string type = channels == 1 ? (prefix == "u" ? "uint" : prefix == "i" ? "int" : "float")
+    const std::string type = channels == 1 ? (prefix == "u"   ? "uint"
+                                              : prefix == "i" ? "int"
+                                                              : "float")
                                            : prefix + "vec" + std::to_string(channels);
     // Floats that are out of an integer's range are undefined there.
     const std::string value = is_integer ? "clamp(" + vec4 + ", 0.0, 1e6)" : vec4;
@@ -70,9 +71,9 @@ Variant variant_of(int index) {
         "SAMPLE(color, gl_FragCoord.yx * color_size.zw) * 0.501960784",
         "vec4(sin(gl_FragCoord.x), exp(read_at(ivec2(2)).g), pow(gl_FragCoord.y, 0.37), gl_FragCoord.w)",
         "vec4(gl_FragCoord.z, sqrt(gl_FragCoord.x / 3.0), log(gl_FragCoord.y), read_at(ivec2(-3, 0)).a)"};
-    constexpr std::array<const char*, 4> kLeaving = {"if (hash(p) % 3u == 0u) discard;",
-                                                     "if (p.x % 3 == 0) { return; }",
-                                                     "if (p.y % 2 == 1) discard; else if (p.x > 9) return;", ""};
+    constexpr std::array<const char*, 4> kLeaving = {
+        "if (hash(p) % 3u == 0u) discard;", "if (p.x % 3 == 0) { return; }",
+        "if (p.y % 2 == 1) discard; else if (p.x > 9) return;", ""};
     Choices choose(index);
     const std::string_view a = kFormats[choose.of(kFormats.size())], b = kFormats[choose.of(kFormats.size())];
     Variant variant;
@@ -153,7 +154,7 @@ Capture picture_of(int width, int height, int frame) {
 
 constexpr int kVariants = 40;  // of five shaders each
 
-class DrawsAsComputeShaders : public gpu::OnSoftware {};
+class DrawsAsComputeShaders : public gpu::OnEachBackend {};
 
 TEST_P(DrawsAsComputeShaders, GiveTheBitsOfFragmentsInGeneratedEffects) {
     EffectFolder effects;
@@ -179,19 +180,20 @@ TEST_P(DrawsAsComputeShaders, GiveTheBitsOfFragmentsInGeneratedEffects) {
     }
 }
 
-ON_SOFTWARE_BACKENDS(DrawsAsComputeShaders);
+ON_EACH_BACKEND(DrawsAsComputeShaders);
 
 /// One pass from color to color, whose shader has `text`, and how it ran.
 DrawnPass drawn(const std::string& body) {
     EffectFolder effects;
-    effects.add("one", R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+    effects.add(
+        "one", R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
         "textures": { "levels": { "format": "rgba16f", "mips": "auto", "doc": "." } },
         "passes": [ { "name": "fill", "shader": "main.frag", "reads": ["color"], "writes": ["levels"],
                       "defines": { "FILL": 1 } },
                     { "name": "main", "shader": "main.frag", "reads": ["levels"], "writes": ["color"] } ])",
-                "#ifdef FILL\nvoid main() { out_levels = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n#else\n" +
-                    body + "\n#endif\n");
-    Bench bench(effects, look_of(R"({"effect": "one"})"), {}, Backend::software,
+        "#ifdef FILL\nvoid main() { out_levels = texelFetch(color, ivec2(gl_FragCoord.xy), 0); }\n#else\n" +
+            body + "\n#endif\n");
+    Bench bench(effects, look_of(R"({"effect": "one"})"), {}, gpu::test_backend(),
                 {.draw_with = DrawWith::compute});
     bench.color(picture_of(16, 8, 1));
     return bench.renderer().draws().back();
@@ -203,7 +205,8 @@ TEST(WhatCannotCompute, StaysADrawAndSaysWhy) {
         {"void main() { out_color = vec4(gl_FrontFacing ? 1.0 : 0.0); }", "uses gl_FrontFacing"},
         {"void main() { out_color = texture(levels, gl_FragCoord.xy / 9.0); }",
          "chooses levels of a texture by derivatives, with texture()"},
-        {"void leave() { discard; }\nvoid main() { leave(); out_color = vec4(1); }", "discards outside of main()"},
+        {"void leave() { discard; }\nvoid main() { leave(); out_color = vec4(1); }",
+         "discards outside of main()"},
         {"void main() { out_color = textureLod(levels, gl_FragCoord.xy / 9.0, 1.0); }", ""}};
     for (const auto& [body, why] : bodies) {
         const DrawnPass pass = drawn(body);
@@ -227,7 +230,7 @@ TEST(WhatCannotCompute, IsWhatBlendsOrHasAVertexShader) {
                 "void main() { OUT = texelFetch(IN, ivec2(gl_FragCoord.xy), 0); }\n");
     write_text(effects.path() / "sum" / "point.vert",
                std::string(kShaderHead) + "void main() { gl_Position = vec4(0, 0, 0, 1); }\n");
-    Bench bench(effects, look_of(R"({"effect": "sum"})"), {}, Backend::software,
+    Bench bench(effects, look_of(R"({"effect": "sum"})"), {}, gpu::test_backend(),
                 {.draw_with = DrawWith::compute});
     bench.color(picture_of(16, 8, 1));
     std::string whys;
@@ -237,8 +240,9 @@ TEST(WhatCannotCompute, IsWhatBlendsOrHasAVertexShader) {
 
 TEST(WhatCannotCompute, IsReportedWithTheAuthorsOwnLine) {
     EffectFolder effects;
-    effects.add_color("wrong", "source * strengthh", R"("strength": { "type": "float", "default": 1, "doc": "." })");
-    Bench bench(effects, look_of(R"({"effect": "wrong"})"), {}, Backend::software,
+    effects.add_color("wrong", "source * strengthh",
+                      R"("strength": { "type": "float", "default": 1, "doc": "." })");
+    Bench bench(effects, look_of(R"({"effect": "wrong"})"), {}, gpu::test_backend(),
                 {.draw_with = DrawWith::compute});
     try {
         bench.color(picture_of(16, 8, 1));

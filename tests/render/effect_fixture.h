@@ -14,6 +14,7 @@
 #include "framework/gpu/context.h"
 #include "framework/look/look.h"
 #include "framework/render/renderer.h"
+#include "tests/backends.h"
 #include "tests/synthetic_capture.h"
 #include "tests/temporary_folder.h"
 
@@ -82,7 +83,7 @@ private:
 class Bench {
 public:
     Bench(const EffectFolder& effects, const std::string& look, const PipelineOptions& options = {},
-          gpu::Backend backend = gpu::Backend::software, const RendererOptions& drawing = {})
+          gpu::Backend backend = gpu::test_backend(), const RendererOptions& drawing = {})
         : bound_(effects, look, options),
           context_(backend),
           renderer_(context_, bound_.pipeline(), std::filesystem::path(AFTERSHADE_SOURCE_DIR), {}, drawing) {

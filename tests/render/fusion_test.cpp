@@ -44,7 +44,7 @@ struct RunChoices {
     std::vector<std::string> taps{};
 };
 
-class FusionOn : public gpu::OnSoftware {
+class FusionOn : public gpu::OnEachBackend {
 protected:
     LookRun run(const EffectFolder& effects, const std::string& steps, const RunChoices& choices = {}) {
         PipelineOptions options;
@@ -86,7 +86,7 @@ protected:
 
     EffectFolder none_;
 };
-ON_SOFTWARE_BACKENDS(FusionOn);
+ON_EACH_BACKEND(FusionOn);
 
 /// Shipped effects that take their colour by the pixel, and nothing else that a capture of colour lacks.
 std::vector<const EffectManifest*> pointwise_effects() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/backends.h"
 #include "tests/render/effect_fixture.h"
 
 namespace aftershade::test {
@@ -28,7 +29,7 @@ protected:
     /// A pinhole lens that gives infinity `radius_px` in an image of kWidth, and half the focus distance
     /// minus it.
     Image coc(const Capture& capture, double radius_px, const std::string& more,
-              gpu::Backend backend = gpu::Backend::software) const {
+              gpu::Backend backend = gpu::test_backend()) const {
         const double focal_mm = 200, sensor_mm = 36;
         const double aperture_mm = 2 * radius_px * sensor_mm / kWidth * (kFocusM * 1000) / focal_mm;
         const std::string params = R"({"lens_model": "pinhole", "focus_distance": 2, "sensor_width": 36,

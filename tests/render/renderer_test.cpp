@@ -33,8 +33,8 @@ void expect_everywhere(const Image& image, Rgb expected) {
         }
 }
 
-class RendererOn : public gpu::OnSoftware {};
-ON_SOFTWARE_BACKENDS(RendererOn);
+class RendererOn : public gpu::OnEachBackend {};
+ON_EACH_BACKEND(RendererOn);
 
 TEST_P(RendererOn, CopiesColorBitForBitThroughAnIdentity) {
     EffectFolder effects;
@@ -420,7 +420,7 @@ TEST_F(Renderer, CompilesPassesThatNothingNeedsOnlyWhereFaultsAreSought) {
     expect_everywhere(Bench(effects_, look).color(plain()), {0.5f, 1, 2});
     const auto fault = [&](const RendererOptions& drawing) -> std::string {
         try {
-            Bench(effects_, look, {}, gpu::Backend::software, drawing).run(plain());
+            Bench(effects_, look, {}, gpu::test_backend(), drawing).run(plain());
         } catch (const Error& error) {
             return error.what();
         }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/backends.h"
 #include "tests/render/effect_fixture.h"
 
 namespace aftershade::test {
@@ -226,8 +227,7 @@ TEST(PartialTextures, LetAnAuditFindThePassThatReadsWhatNoneDrew) {
     for (const bool peeks : {false, true}) {
         EffectFolder effects;
         effects.add("partial", kPartial, partial_shader(peeks));
-        Bench bench(effects, look_of(R"({"effect": "partial"})"), {}, gpu::Backend::software,
-                    {.audits = true});
+        Bench bench(effects, look_of(R"({"effect": "partial"})"), {}, gpu::test_backend(), {.audits = true});
         const std::vector<AuditFinding> found = bench.run(picture_of_row(1)).audit;
         ASSERT_EQ(found.empty(), !peeks);
         if (!peeks) continue;

@@ -12,7 +12,7 @@
 namespace aftershade::test {
 namespace {
 
-class Toys : public gpu::OnSoftware {
+class Toys : public gpu::OnEachBackend {
 protected:
     static Image run(const std::string& steps, const Capture& capture) {
         const std::filesystem::path root = AFTERSHADE_SOURCE_DIR;
@@ -84,7 +84,7 @@ TEST_P(Toys, SplatForwardWithTheNearestWinning) {
                 ASSERT_EQ(splat.at(x, y, c), expected.at(x, y, c)) << x << " " << y << " " << c;
 }
 
-ON_SOFTWARE_BACKENDS(Toys);
+ON_EACH_BACKEND(Toys);
 
 }  // namespace
 }  // namespace aftershade::test

@@ -15,7 +15,7 @@ namespace aftershade::visibility {
 namespace {
 
 class LightOn : public gpu::SoftwareTest {};
-ON_SOFTWARE_BACKENDS(LightOn);
+ON_EACH_BACKEND(LightOn);
 
 constexpr glm::ivec2 kLitSize_px(160, 90);
 

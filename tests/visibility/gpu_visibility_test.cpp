@@ -18,7 +18,7 @@ namespace {
 using scene::kNoShading;
 
 class VisibilityOn : public gpu::SoftwareTest {};
-ON_SOFTWARE_BACKENDS(VisibilityOn);
+ON_EACH_BACKEND(VisibilityOn);
 
 struct Traced {
     std::vector<std::uint32_t> on_cpu;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/aperture_checks.h"
+#include "tests/backends.h"
 #include "tests/not_finite.h"
 
 namespace aftershade::test::dof_simple {
@@ -26,7 +27,7 @@ std::string lens(double radius_px, int width_px) {
 }
 
 FrameResult run(const Capture& capture, const std::string& params,
-                gpu::Backend backend = gpu::Backend::software) {
+                gpu::Backend backend = gpu::test_backend()) {
     LookRunner runner(R"({"aftershade": 1, "steps": [{"effect": "dof_simple", "params": {)" + params + "}}]}",
                       backend, {"dof_simple.coc"});
     return runner.run(capture);
