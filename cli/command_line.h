@@ -23,8 +23,8 @@ std::vector<std::string> with_options(const std::vector<std::string>& words,
 /// The variables of the environment that the program reads, as this process was started with them.
 std::map<std::string, std::string> own_variables();
 
-/// The command that does again what this process was started for, with these options in place of those that
-/// were there; right in any shell, whatever its folder and its variables.
+/// The command that repeats the task of this process, with these options in place of its own. It works in any
+/// shell, with any folder and variables.
 std::string command_to_repeat(const std::vector<OptionValue>& options = {});
 
 }  // namespace aftershade::cli

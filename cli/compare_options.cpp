@@ -149,7 +149,7 @@ void add_compare_options(CLI::App& app, CompareOptions& options) {
     add_tolerance(app, "fail", "failure, exit 2", options.fail);
     add_tolerance(app, "warn", "warning, exit 1", options.warn);
     app.add_flag("--nan-equal", options.nan_equal,
-                 "Treat NaN as equal to NaN (otherwise a pixel with one fails)");
+                 "Treat NaN as equal to NaN (by default a pixel with NaN fails)");
     app.add_flag("--fill-outside", options.fill_outside,
                  "Let data windows differ: outside one, depth is infinite and all else is 0");
     app.add_option("--role", options.roles,

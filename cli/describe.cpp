@@ -87,7 +87,7 @@ Verb add_describe(CLI::App& app) {
     add_effect_path_option(app, options->effect_paths);
     auto* json = app.add_flag("--json", options->json, "Print JSON");
     app.add_flag("-v,--verbose", options->verbose,
-                 "Of an effect, print its sources, textures, telemetry and passes too");
+                 "Also print an effect's sources, textures, telemetry and passes");
     app.add_option("--plot", options->plot,
                    "Plot the scattering profile, or an effect's default one, to this .svg")
         ->type_name("FILE")

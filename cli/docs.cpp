@@ -99,7 +99,7 @@ ExitCode docs(const DocsOptions& options) {
         same = false;
         if (!options.check) write_text_file(path_below(file.parent_path(), file.filename()), text);
         fmt::print("{}{}\n", file.string(),
-                   options.check ? ": is not what is declared; run aftershade docs" : "");
+                   options.check ? ": differs from the declarations; run aftershade docs" : "");
     }
     // A page of an effect that is gone.
     if (options.effects.empty() && fs::is_directory(options.folder, failure))

@@ -49,7 +49,7 @@ std::string real_files_of(const Profile& profile) {
 
 /// What the shipped profiles say of themselves.
 grammar::Tables tables_of_profiles() {
-    std::string shipped = "| profile | what it is | roles | seen on real files |\n|---|---|---|---|\n";
+    std::string shipped = "| profile | producer | roles | seen on real files |\n|---|---|---|---|\n";
     std::string facts = "| profile | fact | verified on | source |\n|---|---|---|---|\n";
     Diagnostics diagnostics;
     for (const Profile& profile : read_profiles(data_path() / "profiles", diagnostics)) {

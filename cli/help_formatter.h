@@ -1,4 +1,4 @@
-// What `--help` looks like: at most 100 columns, names on the left, what an option does on the right.
+// The layout of `--help`: at most 100 columns, names on the left, effects of options on the right.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// What `inspect` shows of a capture, as text for people and as JSON.
+// The report of `inspect` on a capture, as text for people and as JSON.
 #pragma once
 
 #include <array>

@@ -75,7 +75,7 @@ void add_job_options(CLI::App& app, JobArguments& options) {
                    "number from Slurm, Kubernetes, AWS Batch, PBS or Grid Engine");
     app.add_option("--warmup", options.warmup,
                    "Frames to render before a chunk without writing them, for looks with history: a number, "
-                   "or auto for what the effects declare")
+                   "or auto for the number that the effects declare")
         ->capture_default_str();
     app.add_option("--frame-timeout", options.frame_timeout_s,
                    "Kill a worker that finishes no frame in this many seconds; its frame fails")

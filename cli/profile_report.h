@@ -1,4 +1,4 @@
-// What `describe` shows of a scattering profile.
+// The text of `describe` for a scattering profile.
 #pragma once
 
 #include <optional>

@@ -103,7 +103,7 @@ void add_options(CLI::App& app, RenderArguments& options) {
         ->check([](const std::string& text) -> std::string {
             const std::vector<std::string> lossless = {"none", "rle", "zips", "zip", "piz"};
             if (std::ranges::find(lossless, text) != lossless.end() || exr_compression_level(text)) return "";
-            return text + " is none of " + list_of_names(lossless) +
+            return text + " is not one of " + list_of_names(lossless) +
                    ", or zip or zips with a level, as zip:1";
         })
         ->capture_default_str();

@@ -100,8 +100,8 @@ void add_output_options(CLI::App& app, RunArguments& options) {
                    "X,Y,W,H: render only these px of the display window, at full scale");
     app.add_option(
            "--region-margin", options.region_margin_px,
-           "Render this many px around the region, which are not written, instead of what the effects "
-           "need for the pixels of the whole frame")
+           "Render this many px around the region instead of the margin that the effects need for the "
+           "pixels of the whole frame; the margin is not written")
         ->check(CLI::Range(0, 16384));
     app.add_option("--output-roles", options.roles, "Roles in EXR outputs (default: color)")->delimiter(',');
     app.add_option("--pixel-type", options.pixel_type, "Type of roles that are half by default")

@@ -1,4 +1,4 @@
-// What a run reads, held against what it writes.
+// Inputs of a run, compared with its outputs.
 #pragma once
 
 #include "cli/bound_look.h"

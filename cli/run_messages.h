@@ -1,5 +1,5 @@
-// What `run` prints for a person or a program while it works and at the end. All on stderr; stdout holds the
-// paths of the files written, one a line.
+// Messages of `run` for people or programs, while it works and at the end. All go to stderr; stdout has the
+// paths of the written files, one a line.
 #pragma once
 
 #include <chrono>
@@ -54,13 +54,13 @@ private:
 
 class RunReporter {
 public:
-    /// Of `frame_count` frames the first ones only warm history up.
+    /// The first of the `frame_count` frames only warm up history.
     RunReporter(ProgressStyle style, int frame_count, int warmup_frames, bool verbose)
         : style_(style), frame_count_(frame_count), warmup_frames_(warmup_frames), verbose_(verbose) {}
 
     RunObserver observer();
     void print_summary(const RunReport& report);
-    /// Whatever the style.
+    /// In any style.
     void warn(const std::string& message);
 
 private:

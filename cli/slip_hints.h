@@ -1,4 +1,4 @@
-// What a command line that cannot be read was likely meant to be.
+// Suggestions for a command line that cannot be read.
 #pragma once
 
 #include <string>

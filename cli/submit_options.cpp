@@ -25,8 +25,8 @@ void add_division_options(CLI::App& app, SubmitArguments& options) {
         ->excludes(tasks);
     app.add_option(
            "--history", options.history,
-           "What a task gets from the frames before its own: exact (tasks run in turn and pass history on), "
-           "warmup (it renders a few of them first) or none; auto is warmup if the look has history")
+           "History of a task: exact (tasks run in turn and pass it on), warmup (a task first renders a few "
+           "earlier frames), none, or auto (warmup if the look has history)")
         ->check(CLI::IsMember({"auto", "exact", "warmup", "none"}))
         ->capture_default_str();
 }

@@ -51,14 +51,14 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->capture_default_str();
     app.add_option(
            "--transparency", options.transparency,
-           "Materials with an opacity below 1: stochastic (a sample shows one of the surfaces that it "
-           "crosses, by chance), lists (memoised: blend all, out of a list for each pixel), or sorted "
-           "(supersampled, accumulation: blend all)")
+           "Materials with an opacity below 1: stochastic (a sample shows a random one of its surfaces), "
+           "lists (memoised: blend all, by a list for each pixel), or sorted (supersampled, accumulation: "
+           "blend all)")
         ->check(CLI::IsMember({"stochastic", "lists", "sorted"}))
         ->capture_default_str();
     app.add_option("--list-nodes", settings.transparency.list_nodes,
-                   "--transparency lists: surfaces for each px that a row has room for; what is beyond is "
-                   "counted and stops samples by chance")
+                   "--transparency lists: surfaces for each px that a row has room for; further ones "
+                   "are counted, and stop samples at random")
         ->check(CLI::Range(0, scene::kMaxListNodes))
         ->each([&options](const std::string&) { options.has_list_nodes = true; })
         ->capture_default_str();

@@ -168,7 +168,7 @@ export class Costs {
     this.none = element(
       "p",
       { class: "empty", hidden: true },
-      "All steps were cached. Times come with the next change.",
+      "All steps were cached. The next change shows times.",
     );
     this.node = panel(
       "Cost",

@@ -179,7 +179,7 @@ export class ShaderView {
     this.#faults = shaderFaults(message);
     this.list.hidden = this.#faults.length === 0;
     this.list.replaceChildren(
-      element("p", { class: "count" }, "The picture is the last good one"),
+      element("p", { class: "count" }, "The picture is from the last text without faults"),
       faultList(
         this.#faults.map((fault) => ({ ...fault, place: `${fault.path.split("/").at(-1)}:${fault.line}` })),
         (fault) => this.goTo(fault),

@@ -74,7 +74,7 @@ export class TextView {
     const help = element(
       "p",
       { class: "hint shown", id: "text-help" },
-      "Taken over half a second after the last key. Tab leaves the text.",
+      "The text is applied half a second after the last key. Tab leaves the text.",
     );
     this.node = element("div", { class: "text-view" }, this.code.node, help);
     this.sent = null;

@@ -45,7 +45,7 @@ export class Variables {
 
   /** A variable of a name and a value, or one that takes a parameter's value and sets it from then on. */
   newForm() {
-    this.newParameter = element("select", { "aria-label": "Parameter that takes the variable" });
+    this.newParameter = element("select", { "aria-label": "Parameter that uses the variable" });
     this.newName = element("input", { type: "text", class: "field text", "aria-label": "Name of the variable", placeholder: "name" });
     this.newValue = element("input", { type: "text", class: "field text", "aria-label": "Value of the variable", placeholder: "value" });
     for (const input of [this.newName, this.newValue]) {
@@ -164,7 +164,7 @@ export class Variables {
       const users = steps.flatMap((step) =>
         Object.entries(step.params).flatMap(([id, entry]) => (entry.value?.var === name ? [`${step.name}.${id}`] : [])),
       );
-      row.hint.textContent = users.length ? `Value of ${users.join(", ")}.` : "No parameter takes this variable.";
+      row.hint.textContent = users.length ? `Value of ${users.join(", ")}.` : "No parameter uses this variable.";
       row.count.textContent = users.length;
     }
   }
@@ -199,7 +199,7 @@ export class Variables {
       iconButton("remove", `Remove the variable ${name}; its parameters keep the value`, () => this.remove(name), {
         class: "icon-button key",
       }),
-      element("span", { class: "source", title: "Parameters that take it" }, count),
+      element("span", { class: "source", title: "Parameters that use it" }, count),
       error,
       hint,
     );

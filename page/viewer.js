@@ -31,7 +31,7 @@ export class Viewer extends EventTarget {
     this.viewSelect.addEventListener("change", () => this.setView(this.viewSelect.value));
     this.otherSelect = element("select", {
       "aria-label": "Compare with",
-      title: "Compare with (W: before on and off)",
+      title: "Compare with (W: the picture before all steps, on and off)",
     });
     this.otherSelect.addEventListener("change", () => this.setOther(this.otherSelect.value));
     this.exposureSlider = element("input", {
@@ -41,7 +41,7 @@ export class Viewer extends EventTarget {
       step: 0.25,
       value: 0,
       "aria-label": "Viewer exposure",
-      title: "Exposure of the viewer alone ([ and ])",
+      title: "Exposure of the viewer, which is not saved ([ and ])",
     });
     this.exposureSlider.addEventListener("input", () => this.setExposure(Number(this.exposureSlider.value)));
     this.exposureField = field({
@@ -77,8 +77,8 @@ export class Viewer extends EventTarget {
       element(
         "div",
         { class: "tool" },
-        button("Fit", () => this.picture.fit(), { title: "Fit (0)" }),
-        button("1:1", () => this.picture.zoomTo(1), { title: "A pixel as a pixel (1)" }),
+        button("Fit", () => this.picture.fit(), { title: "Fit the picture (0)" }),
+        button("1:1", () => this.picture.zoomTo(1), { title: "Zoom to 100 % (1)" }),
         this.zoomWords,
       ),
     );

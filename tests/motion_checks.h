@@ -1,5 +1,5 @@
 // What the tests of motion effects share: captures of shipped scenes with the truth of their shutter, the
-// changed pixels of docs/design.md, and Suzanne through her renderer's shutter.
+// changed pixels of docs/architecture.md, and Suzanne through her renderer's shutter.
 #pragma once
 
 #include <algorithm>

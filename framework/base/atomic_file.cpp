@@ -240,7 +240,7 @@ void AtomicFile::commit(Flush flush) {
         throw Error(ErrorKind::output, final_path_.string() + ": " + step + ": " + std::strerror(errno));
     };
     const int file = open(temporary_path_.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) fail("cannot open what was written");
+    if (file < 0) fail("cannot open the written file");
     // Some file systems have no permissions to keep.
     if (kept_ && fchmod(file, mode_t(*kept_)) != 0 && errno != EPERM && errno != ENOTSUP) {
         close(file);

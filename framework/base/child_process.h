@@ -31,7 +31,7 @@ struct Pipe {
     Descriptor read, write;
 };
 
-/// What spawn_child may give a child: each number is above those that a child has. Throws
+/// File numbers that spawn_child may give a child: each is above those that a child has. Throws
 /// Error(ErrorKind::effect).
 Pipe make_pipe();
 /// Two ends of a stream that both processes read and write. Throws Error(ErrorKind::effect).

@@ -26,7 +26,7 @@ struct Place {
     std::string turn = {};
 };
 
-/// What was chosen, such as "bokeh.taps=2" by Option::set.
+/// The chosen value, such as "bokeh.taps=2" for Option::set.
 Place option_place(Option option, std::string value = "");
 
 /// "file:line:column", "file" where there is no line, or "--set bokeh.taps=2" as the front end spells it.

@@ -1,4 +1,4 @@
-// What ended the work, as an exception.
+// The exception that ends the work.
 #pragma once
 
 #include <memory>

@@ -36,7 +36,7 @@ private:
         std::uint64_t inode = 0;
         auto operator<=>(const Identity&) const = default;
     };
-    /// What lies at a path.
+    /// The kind of file at a path.
     struct Found {
         std::optional<Identity> identity;  ///< of a regular file
         bool is_file = true;               ///< a regular file, or nothing yet

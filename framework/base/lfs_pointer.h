@@ -8,7 +8,7 @@
 
 namespace aftershade {
 
-/// What is wrong with such a file, and the remedy; "" of any other.
+/// The fault of such a file, and the remedy; "" for any other file.
 inline std::string lfs_fault(const std::filesystem::path& path) {
     // The first line of every pointer: the specification of Git LFS, "The Pointer".
     if (!file_begins_with(path, "version https://git-lfs")) return "";

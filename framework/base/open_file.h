@@ -6,7 +6,7 @@
 
 namespace aftershade {
 
-/// A regular file that is open for reading; closes itself. Whatever happens to its name, this file is read.
+/// A regular file that is open for reading; closes itself. This file is read even if its name changes.
 /// [moves only]
 class OpenFile {
 public:

@@ -1,4 +1,4 @@
-// What callers choose, by name: each front end says it as its users write it.
+// Options by id: each front end spells them as its users write them.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@
 
 namespace aftershade {
 
-/// What 0, "as many as there are cores", stands for.
+/// The number of threads that 0, "as many as there are cores", stands for.
 inline int thread_count(int asked) {
     return asked > 0 ? asked : std::max(1, int(std::thread::hardware_concurrency()));
 }
@@ -51,7 +51,7 @@ struct Part {
 /// `count` values in parts that follow each other, one for each thread, or a single one where they are too
 /// few to be worth a thread. Each begins at a multiple of `step`.
 inline std::vector<Part> parts_for_threads(std::size_t count, std::size_t step, int threads) {
-    // What a core decodes in the time that a thread's start takes.
+    // The amount that a core decodes in the time of a thread's start.
     constexpr std::size_t kWorthwhile = 262'144;
     const std::size_t most = std::max<std::size_t>(1, std::min(std::size_t(threads), count / kWorthwhile));
     const std::size_t steps = (count + step - 1) / step;
@@ -61,7 +61,7 @@ inline std::vector<Part> parts_for_threads(std::size_t count, std::size_t step, 
     return parts;
 }
 
-/// What work(part) returns for each of the parts, in their order.
+/// The results of work(part) for all parts, in their order.
 template <class Work>
 auto for_each_part(const std::vector<Part>& parts, const Work& work) {
     std::vector<decltype(work(Part()))> results(parts.size());

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kNotFollowed =
-    "a symbolic link, which is not followed here (remove it, or put in its place what it leads to)";
+    "a symbolic link, which is not followed here (remove it, or put the file itself in its place)";
 
 std::string system_fault(const char* what) {
     return errno == ENOENT ? kNoSuchFile : std::string(what) + ": " + std::strerror(errno);

@@ -1,6 +1,6 @@
 // Files beside the user's own, under names that the user did not give: journals, locks, sidecars, manifests,
-// reports. Whoever may write into their folder can have put a link, a pipe or a device there. `folder` is
-// what the user named and may be, or lie behind, a link; below it no link is followed.
+// reports. A user who may write into their folder can put a link, a pipe or a device there. The user named
+// `folder`, which may be, or lie behind, a link; below it no link is followed.
 #pragma once
 
 #include <cstdint>

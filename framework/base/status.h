@@ -1,5 +1,5 @@
-// What this process is doing, reported to the process that started it, so that a crash can be blamed on
-// something.
+// The present activity of this process, reported to the process that started it, which can then attribute
+// a crash.
 #pragma once
 
 #include <functional>

@@ -12,15 +12,15 @@ namespace aftershade {
 
 /// a-z, 0-9 and _, beginning with a letter: what ids, parameters and steps are named by.
 bool is_snake_case(std::string_view name);
-/// What an error says of a name that is not: "<thing> 'Name' " and this.
+/// The text of an error after an invalid name: "<thing> 'Name' " and this.
 inline constexpr const char* kMustBeSnakeCase = "must be snake_case: a-z, 0-9 and _, beginning with a letter";
 
-/// A-Z as a-z; every other byte as it is, whatever the locale.
+/// A-Z as a-z; every other byte unchanged, in any locale.
 std::string lower_case(std::string_view text);
 
 /// Without the spaces at its ends.
 std::string_view trimmed(std::string_view text);
-/// What stands between the separators: one piece more than there are of them, some of them perhaps empty.
+/// The pieces between the separators: one more than separators; pieces may be empty.
 std::vector<std::string_view> split(std::string_view text, char separator);
 /// "a, b and c" with `last` " and ".
 std::string joined(std::span<const std::string> parts, std::string_view last,

@@ -13,8 +13,8 @@
 
 namespace aftershade {
 
-/// What pictures depend on besides the look and the capture: the same input gives the same bits on one
-/// renderer, Mesa and LLVM, on every processor with the same instructions, whoever makes it.
+/// The environment that pictures depend on besides the look and the capture. The same input gives the same
+/// bits on one renderer, Mesa and LLVM, on every processor with the same instructions, by any maker.
 struct GoldenEnvironment {
     std::string backend;   ///< software GL is one, whichever library opens it
     std::string renderer;  ///< GL_RENDERER
@@ -39,14 +39,14 @@ GoldenEnvironment environment_of(const gpu::ContextInfo& info);
 /// backend, renderer, version, mesa, llvm, cpu, instructions, software.
 nlohmann::ordered_json json_of(const GoldenEnvironment& environment);
 
-/// What a picture is made of; "" where one is not known.
+/// Hashes of a picture's sources; "" for an unknown one.
 struct GoldenSources {
     std::string look;     ///< hash of the look, its effects and plug-ins (look_hash.h)
     std::string capture;  ///< hash of the capture's files and profiles (capture_hash.h)
     std::string program;  ///< version of Aftershade
 };
 
-/// What made an approved image. Older ones have renderer, version, cpu and backend only.
+/// The origin of an approved image. Older ones have renderer, version, cpu and backend only.
 struct GoldenSidecar {
     GoldenEnvironment environment;
     std::string command;  ///< that approved it

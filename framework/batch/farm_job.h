@@ -13,7 +13,7 @@
 
 namespace aftershade {
 
-/// What a task that begins within a shot gets from the frames before it.
+/// The history of a task that begins within a shot.
 enum class FarmHistory {
     none,    ///< nothing: the look has no history, or restarts it
     warmup,  ///< what a few frames rendered before the part leave
@@ -23,7 +23,7 @@ enum class FarmHistory {
 struct FarmJob {
     std::string name;  ///< a DNS label (RFC 1123), which every farm accepts
     std::string program;
-    /// What follows the program's path: "run", the look, the capture, outputs and options, but for the part
+    /// Arguments after the program's path: "run", the look, the capture, outputs and options, except the part
     /// of the frames, the history and the report.
     std::vector<std::string> arguments;
     std::filesystem::path working_folder;              ///< of the tasks; absolute

@@ -69,8 +69,8 @@ CompareRules read_golden_tolerance(const grammar::Reader& reader, Diagnostics& d
 std::vector<GoldenArea> read_golden_areas(const grammar::Reader& tolerance,
                                           const std::filesystem::path& folder, Diagnostics& diagnostics);
 
-/// What cases in golden.json and cases of effects share; the document has been checked. Paths are relative to
-/// `folder`.
+/// The keys that cases in golden.json and cases of effects share; the document has been checked. Paths are
+/// relative to `folder`.
 void read_golden_case(const grammar::Reader& reader, const std::filesystem::path& folder, GoldenCase& result,
                       Diagnostics& diagnostics);
 

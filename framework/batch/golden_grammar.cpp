@@ -49,7 +49,7 @@ void add_level(const std::string& word, const std::string& many, const Tolerance
     add(word + "_percent", grammar::number({.min = 0, .max = 100}),
         "Percentage of pixels that may exceed it.", number(&Tolerance::percent));
     add("hard_" + word, grammar::number({.min = 0}), "Largest difference of any pixel; default: no limit.");
-    add("allow_" + many, grammar::integer(0), "Number of pixels that may exceed it, whatever the percentage.",
+    add("allow_" + many, grammar::integer(0), "Number of pixels that may exceed it, for any percentage.",
         usual ? std::to_string(usual->allowed) : "");
     if (!of_layers) return;
     add(word + "_flip", share, "Largest mean FLIP.");
@@ -78,19 +78,19 @@ Form objects() {
 /// Where something else holds.
 std::vector<Key> place_keys() {
     const Form corner = grammar::integer(-kMaxAreaSide_px, kMaxAreaSide_px);
-    return {
-        optional("rectangle", grammar::list(corner, {.min = 4, .max = 4}),
-                 "x, y, width and height in px of the display window."),
-        optional("mask", text({.min_length = 1, .type = "path from the document's folder"}),
-                 "Picture over the display window: the pixels above a half."),
-        optional("channel", text({.min_length = 1}), "Channel of the mask; default: its only one."),
-        optional("object", objects(), "Objects of the case's capture: the pixels that they cover at all.")};
+    return {optional("rectangle", grammar::list(corner, {.min = 4, .max = 4}),
+                     "x, y, width and height in px of the display window."),
+            optional("mask", text({.min_length = 1, .type = "path from the document's folder"}),
+                     "Picture over the display window: the pixels above a half."),
+            optional("channel", text({.min_length = 1}), "Channel of the mask; default: its only one."),
+            optional("object", objects(),
+                     "Objects of the case's capture: the pixels that they cover, even in part.")};
 }
 
 std::vector<grammar::Rule> place_rules() {
     return {grammar::exactly_one_of({"rectangle", "mask", "object"},
                                     "an area has one of 'rectangle', 'mask' and 'object'"),
-            grammar::needs("channel", "mask", "'channel' is of a 'mask'")};
+            grammar::needs("channel", "mask", "'channel' needs a 'mask'")};
 }
 
 Block ignore_block() {

@@ -1,4 +1,4 @@
-// What a golden suite found: for people as ctest prints it, JUnit for CI, JSON for pages.
+// The results of a golden suite: text in the manner of ctest, JUnit for CI, JSON for pages.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,7 +9,7 @@
 
 namespace aftershade {
 
-/// What the result itself lacks.
+/// Values that the result itself lacks.
 struct GoldenReportContext {
     const GoldenSuite* suite = nullptr;
     GoldenRunOptions options;
@@ -21,8 +21,8 @@ struct GoldenReportContext {
 std::string approve_command(const GoldenReportContext& context,
                             const std::vector<const GoldenCaseResult*>& cases);
 
-/// What the verdict of a case did not look at, as allowances_of(Comparison) says it; "" where it looked at
-/// everything.
+/// Everything that the verdict of a case ignores, as allowances_of(Comparison) lists it; "" if it ignores
+/// nothing.
 std::string allowances_of(const GoldenCaseResult& test);
 /// " 3/42 bloom/lamps ........   Passed    0.41 s"; `good` has six letters.
 std::string line_of(const GoldenCaseResult& test, int done, int all, const char* good = "Passed");

@@ -1,5 +1,5 @@
-// A golden suite from its cases to verdicts: workers beside each other, each image held against those
-// approved.
+// A golden suite from its cases to verdicts: parallel workers, each image compared with the
+// approved ones.
 #pragma once
 
 #include <atomic>

@@ -39,7 +39,7 @@ bool fits_filter(const GoldenCase& test, const std::vector<std::string>& filters
 std::vector<std::filesystem::path> orphaned_goldens(const GoldenSuite& suite,
                                                     const std::vector<std::string>& filters);
 
-/// What a run of the suite reads: its documents, looks, captures and approved images.
+/// Files that a run of the suite reads: its documents, looks, captures and approved images.
 InputFiles suite_inputs(const GoldenSuite& suite, bool with_goldens);
 
 /// JSON Schema of golden.json.

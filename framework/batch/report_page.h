@@ -7,8 +7,8 @@
 namespace aftershade {
 
 struct ReportPageOptions {
-    /// Of the pictures inside the page. Worst verdicts come first; what does not fit is shown from the PNG
-    /// files beside the page, without exposure and values.
+    /// Bytes of the pictures inside the page. Worst verdicts come first. The page shows other pictures from
+    /// the PNG files next to it, without exposure and values.
     std::uint64_t limit_bytes = 128ull * 1024 * 1024;
 };
 

@@ -18,8 +18,8 @@ public:
 
     const std::filesystem::path& folder() const { return folder_; }
 
-    /// Where to write the picture of that file name. It is listed before it is there, whatever ends the
-    /// process. Throws Error(ErrorKind::output). [thread-safe]
+    /// Where to write the picture of that file name. It is listed before it exists, in case the
+    /// process ends. Throws Error(ErrorKind::output). [thread-safe]
     std::filesystem::path add(const std::string& name);
 
     /// Removes the pictures of earlier runs that this one has not written again; files in no list stay.

@@ -33,7 +33,7 @@ public:
     bool barked() const { return barked_; }  ///< the worker, or its pass, took too long
     /// The time that it had, once it barked.
     Duration timeout() const { return by_pass_ ? pass_.timeout : patience_; }
-    /// What barked() says; never lowered.
+    /// The value of barked(); never lowered.
     const std::atomic<bool>& barked_flag() const { return barked_; }
     bool barked_at_pass() const { return by_pass_; }
     /// Where the worker was when it had taken too long: it may have moved before it was killed. Empty before.

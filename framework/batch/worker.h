@@ -16,8 +16,8 @@
 
 namespace aftershade {
 
-/// What a worker says while it runs; each may be empty. Called on the thread that runs run_worker. A line has
-/// no line end; one above 64 KiB comes in pieces.
+/// Messages of a worker while it runs; each may be empty. Called on the thread that runs run_worker. A line
+/// has no line end; one above 64 KiB comes in pieces.
 struct WorkerListener {
     std::function<void(std::string_view line)> on_stdout;
     std::function<void(std::string_view line)> on_stderr;
@@ -44,7 +44,7 @@ struct WorkerResult {
     std::optional<int> last_word;  ///< the exit code that the worker itself announced, if it did
     WorkerLimits limits;           ///< those of the command, for describe()
 
-    /// Of any program: `aftershade` says so itself, see ended_in_order().
+    /// Whether any program succeeded; for `aftershade` itself see ended_in_order().
     bool succeeded() const { return end == WorkerEnd::exited && exit_code == 0; }
     /// Whether `aftershade` came to the end of its work: a library that calls exit() gives no last word.
     bool ended_in_order() const { return end == WorkerEnd::exited && last_word == exit_code; }

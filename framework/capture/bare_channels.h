@@ -10,7 +10,8 @@
 
 namespace aftershade {
 
-/// The decoding without names that are a component of colour alone. What has no other name is not found.
+/// The decoding without names that are a component of colour alone. A channel without another name is not
+/// found.
 RoleDecoding without_bare_names(RoleDecoding decoding);
 
 /// Whether every channel is of the same layer, or of none.

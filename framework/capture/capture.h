@@ -40,7 +40,7 @@ struct CaptureHeader {
     std::vector<std::string> layers;    ///< to choose from, by the profile
     std::vector<std::string> notes;     ///< on what was chosen for the user, in whole sentences
     std::vector<std::string> warnings;  ///< on what may be wrong in the file, in whole sentences
-    /// From the first frame of the capture, by which CaptureReader reads: what is otherwise.
+    /// Differences from the first frame of the capture, by which CaptureReader reads.
     std::vector<std::string> differences;
     bool keeps_alpha = false;  ///< opaque pictures of it have an alpha, too: those of the capture are alike
     Window data_window;        ///< colour's: the working grid
@@ -73,14 +73,14 @@ struct Capture {
     bool motion_from_camera = false;
     /// Pixels with light and an albedo below the floor, where irradiance is light divided by the albedo.
     std::size_t pixels_below_albedo_floor = 0;
-    /// Of a deep capture: what became of its samples, and as how many layers.
+    /// For a deep capture: the reduction of its samples, and the number of layers.
     std::optional<DeepReduction> deep;
     int deep_layers = 0;
     /// By role, as they were read; filled by whoever looks for them (framework/run/nan_policy.h).
     std::map<std::string, NonFinitePixels> non_finite;
 };
 
-/// What else would give a role that a frame lacks.
+/// Other sources of a role that a frame lacks.
 struct RoleElsewhere {
     std::vector<std::string> profiles;  ///< ids
     std::vector<std::string> layers;
@@ -96,7 +96,7 @@ struct StoredChannel {
 /// Opens frames of a sequence, by the number in the file's name: Sequence::file_number(). Every frame is read
 /// as the first that can be read of Sequence::whole and Sequence::frames: by its profile, in its view, from
 /// its layer and its channels where the frame has them, and into its colour space. CaptureHeader::differences
-/// has what is otherwise. A frame without that view or layer is Error(ErrorKind::capture). Each of a
+/// lists the differences. A frame without that view or layer is Error(ErrorKind::capture). Each of a
 /// capture's layers has a first frame of its own. [read() and read_header() may be called from several
 /// threads]
 class CaptureReader {
@@ -111,8 +111,8 @@ public:
     /// The same decision as that of a reader of this capture, without reading it again. Call before anything
     /// is read.
     void share_first_of(const CaptureReader& other) { first_ = other.first_; }
-    /// What the first frame decides of these roles and of all pictures, as text that changes with it; ""
-    /// where there is but one frame.
+    /// The first frame's decisions on these roles and on all pictures, as text that changes with them; ""
+    /// for a single frame.
     std::string decision(std::span<const std::string> roles) const;
     /// Whether the frame's main file is there.
     bool has_frame(int frame) const;
@@ -141,8 +141,8 @@ public:
     std::map<std::string, RoleDecoding> decodings(int frame) const;
 
     /// Every channel of the frame's main file, in this view, bit for bit and under its own name; but the
-    /// channels of the roles in `changed` hold those images, brought back to the producer's conventions. Of a
-    /// role that the file stores as a sum of layers the first layer holds all. Channels of another data
+    /// channels of the roles in `changed` hold those images, brought back to the producer's conventions. If
+    /// the file stores a role as a sum of layers, the first layer holds the sum. Channels of another data
     /// window are placed in the working grid. Deep channels are flattened. Throws Error(ErrorKind::usage)
     /// where the capture has layers: no file is the whole picture's.
     std::vector<StoredChannel> read_stored_channels(int frame,

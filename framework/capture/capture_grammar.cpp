@@ -108,7 +108,8 @@ Block make_layer_block() {
     return {
         .name = "layer",
         .thing = "the layer",
-        .doc = "One of the pictures that lie behind one another. What it lacks is the capture's.",
+        .doc =
+            "One of several pictures, each behind the one before. Keys that it lacks come from the capture.",
         .keys = {optional("frames", text(),
                           "Pattern of its main files; with it, `files` of the capture are not the layer's."),
                  optional("files", files_by_role(),
@@ -120,7 +121,8 @@ Block make_layer_block() {
                  optional("channels", decodings(), "Decoding by role."),
                  optional("alpha", grammar::choice(alpha_names()), "Alpha of its color; opaque: read 1."),
                  optional("holdout", grammar::boolean(),
-                          "What lies in front is cut out of it: it is divided by what that lets through.",
+                          "Whether the surfaces in front are cut out of it; its values are divided by the "
+                          "light that these let through.",
                           "false")}};
 }
 

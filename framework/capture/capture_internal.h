@@ -37,7 +37,7 @@ struct CaptureReader::OpenFrame {
     CaptureHeader header;
 };
 
-/// What the first frame of a run decides for the others.
+/// Decisions of a run's first frame for the other frames.
 struct CaptureReader::FirstFrame {
     std::once_flag once;
     std::optional<CaptureHeader> header;            ///< nullopt where none can be read, or there is but one

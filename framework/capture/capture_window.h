@@ -26,7 +26,7 @@ Window whole_picture(const CaptureHeader& header);
 /// That a region reaches beyond the whole picture, in a sentence with both; "" where it does not.
 std::string region_fault(const CaptureHeader& header, const Window& region);
 
-/// What two windows have in common; width or height 0 or below where that is nothing.
+/// The intersection of two windows; width or height is 0 or below if it is empty.
 Window intersection(const Window& a, const Window& b);
 
 }  // namespace aftershade

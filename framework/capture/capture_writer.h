@@ -32,8 +32,8 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
 void write_deep_capture(const std::filesystem::path& path, const DeepImage& image,
                         const CaptureHeader& header, const CaptureWriteOptions& options);
 
-/// What capture.json says of a sequence. Its camera and lights overrule those of the frames' headers, so
-/// they hold what is the same in all of them.
+/// The capture.json of a sequence. Its camera and lights override those of the frames' headers, so they hold
+/// only values that are the same in all frames.
 struct CaptureDocument {
     std::string frames = "gbuffer_####.exr";
     std::vector<int> frame_numbers;

@@ -14,8 +14,8 @@ namespace aftershade {
 /// "View Layer.Combined.R", and for "View_Layer_Combined.red", as Nuke writes it again.
 std::string canonical_name(std::string_view name);
 
-/// A channel's name as a layer, "" for none, and a component in the spelling of canonical_name(). Of a name
-/// without a dot the component of a colour may follow an underscore: "beauty_R".
+/// A channel's name as a layer, "" for none, and a component in the spelling of canonical_name(). In a name
+/// without a dot, the component of a colour may follow an underscore: "beauty_R".
 struct ChannelName {
     std::string layer;
     std::string component;

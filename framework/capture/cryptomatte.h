@@ -41,7 +41,7 @@ private:
 /// Those whose channels are there, by their names' order in the header. A manifest may lie in a file of its
 /// own in the folder of the EXR file (manif_file).
 std::vector<CryptomatteLayer> find_cryptomattes(const FrameFile& file);
-/// What the header names, whether the channels are there or not.
+/// Layers that the header names, even without their channels.
 std::vector<std::string> declared_cryptomattes(const FrameFile& file);
 /// The layer whose name is `name`, or ends in ".<name>"; with "" the only one. Throws
 /// Error(ErrorKind::capture) with the names there are.
@@ -81,7 +81,7 @@ struct ObjectCoverage {
     std::string name;        ///< of the manifest; the id as eight hexadecimal digits where it has none
     double coverage_px = 0;  ///< summed over all pixels and ranks
 };
-/// Of all objects of the manifest and all ids in the pixels, those that cover most first. Throws as
+/// The coverage of all objects of the manifest and all ids in the pixels, the largest first. Throws as
 /// cryptomatte_mask does.
 std::vector<ObjectCoverage> coverage_of_objects(const FrameFile& file, const CryptomatteLayer& layer,
                                                 const Window& grid);

@@ -11,7 +11,7 @@
 
 namespace aftershade {
 
-/// What a decoding needs beside the stored values.
+/// Inputs of a decoding besides the stored values.
 struct DecodeContext {
     std::string file;  ///< begins the message of an error
     Window grid;       ///< of the image

@@ -13,7 +13,7 @@ namespace aftershade {
 inline constexpr int kDefaultDeepLayers = 4;
 inline constexpr int kMostLayers = 8;
 
-/// What decides where a sample is and what it hides. By sample.
+/// The values that decide the place of a sample and the samples that it hides. By sample.
 struct DeepGeometry {
     std::span<const std::uint32_t> first;  ///< by pixel, and one more: where its samples begin
     std::span<const float> front;          ///< Z, in any unit
@@ -21,7 +21,7 @@ struct DeepGeometry {
     std::span<const float> alpha;          ///< empty: opaque
 };
 
-/// What became of the samples, over the pixels that have any.
+/// The reduction of the samples, over the pixels that have any.
 struct DeepReduction {
     std::uint64_t samples = 0;
     std::uint64_t most_samples = 0;   ///< in a pixel
@@ -29,8 +29,8 @@ struct DeepReduction {
     std::uint64_t nan_pixels = 0;     ///< where a sample has no depth, and counts as behind all others
     std::size_t first_nan = 0;        ///< by rows
     std::uint64_t merged_pixels = 0;  ///< that have more gaps than layers can show
-    /// Of |ln(depth of the sample / depth of its layer)|, weighted by what each sample shows in its layer:
-    /// the mean, and the largest mean of one pixel. A hundredth moves what is seen by 1 % in depth.
+    /// Mean of |ln(depth of the sample / depth of its layer)|, weighted by each sample's visible share, and
+    /// the largest mean of one pixel. 0.01 means that the visible surface moved by 1 % in depth.
     double mean_shift = 0;
     double most_shift = 0;
 
@@ -40,12 +40,12 @@ struct DeepReduction {
 
 /// The layer of each sample and its share in it.
 ///
-/// Samples are sorted by depth, and those with an extent count as homogeneous volumes. What overlaps or lies
-/// at one depth is mixed as Kainz, "Interpreting OpenEXR Deep Pixels" (2013), says. A pixel is split where
-/// nothing lies between a depth and one more than 1 % further away. Where that gives more layers than there
-/// may be, neighbours are put together, each time those whose union moves the least light, in 1 / depth; of
-/// equals the furthest. Hidden samples are a layer, too: they move no light, so that the nearest of them
-/// stays by itself.
+/// Samples are sorted by depth, and those with an extent count as homogeneous volumes. Samples that overlap
+/// or lie at one depth are mixed as Kainz, "Interpreting OpenEXR Deep Pixels" (2013), says. A pixel is split
+/// where nothing lies between a depth and one more than 1 % further away. Where that gives more layers than
+/// there may be, neighbours are put together, each time those whose union moves the least light, in 1 /
+/// depth; of equals the furthest. Hidden samples are a layer, too: they move no light, so that the nearest of
+/// them stays by itself.
 class DeepLayers {
 public:
     static constexpr std::uint32_t kNoSample = 0xffffffff;

@@ -14,7 +14,7 @@
 
 namespace aftershade {
 
-/// What becomes of a pixel's samples.
+/// The handling of a pixel's samples.
 struct DeepRead {
     int layer = -1;      ///< one of them; -1: all, as a flat picture
     bool blends = true;  ///< put over one another; else the value of the sample that shows most
@@ -36,7 +36,7 @@ public:
     Image read_floats(std::span<const std::string> channels, const DeepRead& how, float outside);
     /// One channel of unsigned integers; 0 where no sample is.
     Image read_uints(const std::string& channel, const DeepRead& how);
-    /// What of each pixel is covered.
+    /// The covered share of each pixel.
     Image read_alpha(const DeepRead& how);
     const DeepReduction& reduction();
     /// How many pixels have 0, 1, 2, ... samples; what has `most` or more is counted together.

@@ -10,9 +10,9 @@
 
 namespace aftershade {
 
-/// One single-channel image for each stored channel of `role`. Of a sum of layers, which cannot be taken
-/// apart again, the first holds all of it. `ids_as_uint`: whether the file stores ids as integers. Colours
-/// are taken as they are.
+/// One single-channel image for each stored channel of `role`. A sum of layers cannot be separated
+/// again, so the first layer holds all of it. `ids_as_uint`: whether the file stores ids as integers. Colours
+/// stay unchanged.
 std::map<std::string, Image> encode_role(const std::string& role, Image canonical,
                                          const RoleDecoding& decoding, const FoundChannels& channels,
                                          bool ids_as_uint, const DecodeContext& context);

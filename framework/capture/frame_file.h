@@ -55,7 +55,7 @@ public:
                      const DeepRead& how = {}) const;
     /// The part that a channel lies in, where it is deep; nullptr where it is flat.
     DeepPart* deep_part_of(const std::string& channel) const;
-    /// What samples cover, of the deep part that has the channel.
+    /// The coverage of the samples in the deep part that has the channel.
     Image read_deep_alpha(const std::string& channel, const Window& grid, const DeepRead& how) const;
     /// Channels as read_floats or read_uints will request them.
     struct Request {

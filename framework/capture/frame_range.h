@@ -35,7 +35,7 @@ std::string frame_range_pattern();
 class FramePattern {
 public:
     explicit FramePattern(std::string text);
-    /// A name without a frame number, whatever marks it holds.
+    /// A name without a frame number, with any marks.
     static FramePattern of_file(std::string name);
     bool has_frame() const { return length_ > 0; }
     const std::string& text() const { return text_; }

@@ -22,8 +22,8 @@ enum class VelocityDelta { cur_minus_prev, prev_minus_cur, next_minus_cur, cur_m
 /// Length 1 of a stored motion vector: a pixel, the image's side, or half of it (from -1 to +1).
 enum class VelocityUnit { px, uv, ndc };
 
-/// What a stored depth is a function of: distance; 1 / distance; a perspective z-buffer; or linear between
-/// near and far.
+/// The quantity that a stored depth is a function of: distance; 1 / distance; a perspective z-buffer; or
+/// linear between near and far.
 enum class DepthEncoding { linear, inverse, z_buffer, normalized };
 
 /// No material reflects less: charcoal reflects 0.02 to 0.04. An albedo of 8 bits is up to 0.002 off.
@@ -121,7 +121,7 @@ std::map<std::string, RoleDecoding> read_decodings(const Node& node);
 std::optional<FoundChannels> find_channels(const RoleDecoding& decoding, const std::string& layer,
                                            const ExrPart& part);
 
-/// What "{layer}" may stand for in this part: the prefixes before the channels of the color role, in the
+/// Values of "{layer}" in this part: the prefixes before the channels of the color role, in the
 /// part's order.
 std::vector<std::string> find_layers(const Profile& profile, const ExrPart& part);
 /// The first of them; "" where none fits.
@@ -133,7 +133,7 @@ struct ProfileChoice {
 };
 
 /// The profile that fits a part's header: by attribute first, else the one that names the most channels, else
-/// `native` where the file has a plain colour. What we wrote under native names is `native`. Throws
+/// `native` where the file has a plain colour. A file of this program with native names is `native`. Throws
 /// Error(ErrorKind::capture) where none does and Error(ErrorKind::usage) where several do alike, naming the
 /// remedy; with `has_declared_color`, where capture.json names the colour's channels, it is `native` then.
 ProfileChoice detect_profile(const std::vector<Profile>& profiles, const ExrPart& part,

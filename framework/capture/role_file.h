@@ -1,4 +1,4 @@
-// Roles in files of their own, held against the file of the colour.
+// Roles in files of their own, checked against the file of the colour.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ class FrameFile;
 /// Error(ErrorKind::capture).
 void require_one_picture(const std::string& role, const FrameFile& file, const FrameFile& main);
 
-/// What shows that the pixels may be those of another picture of this size: another shape of pixels, display
+/// Signs that the pixels may be those of another picture of this size: another shape of pixels, display
 /// window, view or camera. In whole sentences.
 std::vector<std::string> role_file_faults(const std::string& role, const FrameFile& file,
                                           const FrameFile& main);

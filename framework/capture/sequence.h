@@ -79,13 +79,13 @@ std::optional<std::filesystem::path> capture_document(const std::string& argumen
 std::optional<Sequence> open_sequence(const std::string& argument, Diagnostics& diagnostics);
 
 /// Every file that reading the sequence may open, whether it is there or not: those of its frames with their
-/// sub-frames, roles and neighbours, and whatever else fits its patterns on disk.
+/// sub-frames, roles and neighbours, and any other file on disk that matches its patterns.
 std::vector<std::filesystem::path> files_of_sequence(const Sequence& sequence);
 
 /// Adds "depth=z.####.exr" of Option::role.
 void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& diagnostics);
 
-/// What a list of frames leaves out between its first and its last.
+/// Frames that a list leaves out between its first and its last.
 struct FrameGaps {
     int step = 1;              ///< of three frames or more: the largest that reaches each of them
     std::int64_t count = 0;    ///< of frames that are missing at this step

@@ -12,8 +12,8 @@ namespace aftershade {
 /// Those that a file has.
 std::vector<std::string> present_of(const std::vector<std::string>& names);
 
-/// The sum of the layers over the grid, as stored. Of a component that the file lacks, alpha is 1, or what
-/// deep samples cover, and others 0.
+/// The sum of the layers over the grid, as stored. If the file lacks alpha, it is 1, or the
+/// coverage of deep samples; other missing components are 0.
 Image read_layers(const FrameFile& file, const FoundChannels& channels, const Window& grid, float outside,
                   const DeepRead& how);
 

@@ -45,10 +45,10 @@ struct CompareArea {
     std::optional<Levels> levels;  ///< nullopt: left out
 };
 
-/// What keeps an area from being found in a picture of that display window; "" where nothing does.
+/// The reason why an area cannot be found in a picture of that display window; "" if it can.
 std::string fault_of(const CompareArea& area, const Window& display);
 
-/// The areas over `window`, in px of files of that display window. What any area leaves out is left out;
+/// The areas over `window`, in px of files of that display window. Ignoring takes precedence;
 /// among areas with limits the first counts. `layer` has the rules that areas share with their layer.
 PixelAreas pixel_areas(const std::vector<CompareArea>& areas, const Window& window, const Window& display,
                        const DifferenceRules& layer);

@@ -64,7 +64,7 @@ struct LayerComparison {
     Image ssim_map;                       ///< of each pixel's window; 1 everywhere for equal bits
     Verdict verdict = Verdict::same;
     std::vector<std::string> reasons;  ///< of the verdict: what was exceeded, by how much
-    /// What no limit holds, so that any difference passes: "Z", "Z in the area mask hair.png".
+    /// Layers and areas without a limit, where any difference passes: "Z", "Z in the area mask hair.png".
     std::vector<std::string> not_judged;
 
     double failing_percent() const;   ///< of the pixels that are not left out
@@ -74,11 +74,11 @@ struct LayerComparison {
 struct Comparison {
     std::filesystem::path reference, test;
     Verdict verdict = Verdict::same;
-    /// What keeps the files from being compared: layers, channels and windows that one has and the other has
-    /// not, or why a file cannot be read.
+    /// Reasons why the files cannot be compared: layers, channels and windows of one file alone, or a file
+    /// that cannot be read.
     std::vector<std::string> faults;
-    /// What is not compared, or has equal numbers and is another picture: smaller levels of tiles, other
-    /// primaries, another pixel aspect. Then the verdict is at least a warning.
+    /// Content that is not compared, or whose equal numbers mean another picture: smaller levels of tiles,
+    /// other primaries, another pixel aspect. The verdict is then at least a warning.
     std::vector<std::string> warnings;
     std::vector<std::string> notes;       ///< how files were read; no verdict
     std::vector<LayerComparison> layers;  ///< in the reference's order; without FLIP's error images and maps
@@ -87,7 +87,7 @@ struct Comparison {
     std::vector<std::string> unknown_layers;  ///< likewise in CompareRules::layers
     std::vector<std::string> labels;          ///< of every layer of either file
 
-    /// What the verdict does not depend on: `ignored`, and LayerComparison::not_judged of every layer.
+    /// Layers that the verdict does not depend on: `ignored`, and LayerComparison::not_judged of every layer.
     std::vector<std::string> not_judged() const;
 };
 

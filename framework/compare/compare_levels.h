@@ -1,4 +1,4 @@
-// What a layer, or an area of it, is held to.
+// The limits of a layer, or of an area of it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace aftershade {
 
 /// A level is exceeded where more than `percent` of a layer's pixels, and more than `allowed` pixels, differ
-/// by more than `limit`; or more than `allowed` by more than `hard`. Both are always looked at, whatever the
-/// other says (idiff's -hardfail is not looked at where no pixel exceeds -fail, nor its -warn).
+/// by more than `limit`; or more than `allowed` by more than `hard`. Both are always tested (idiff
+/// does not test -hardfail and -warn if no pixel exceeds -fail).
 struct Tolerance {
     double limit = 1e-6;  ///< of a pixel's difference; see DifferenceRules
     double percent = 0;   ///< of the pixels
@@ -33,7 +33,7 @@ struct Levels {
 
     Tolerance warn_tolerance() const;
     /// Whether some difference of a layer of this role and number of pixels exceeds a level of fail or warn;
-    /// NaN against a number does so whatever the levels. FLIP and SSIM count where the layer has them.
+    /// NaN against a number exceeds any level. FLIP and SSIM count if the layer has them.
     bool judge(LayerRole role, std::uint64_t pixels, bool has_flip, bool has_ssim) const;
     /// The limits of a pixel alone.
     DifferenceRules difference_limits() const;

@@ -21,8 +21,8 @@ std::string json_text(const Comparison& comparison, const CompareRules& rules);
 std::string csv_header();
 std::string csv_rows(const Comparison& comparison);
 
-/// What the verdict does not look at: "forgives a shift of up to 1 px; 2.5 % of the pixels left out; not
-/// judged: A, Z"; "" where it looks at everything.
+/// Everything that the verdict ignores: "forgives a shift of up to 1 px; 2.5 % of the pixels left out; not
+/// judged: A, Z"; "" if it ignores nothing.
 std::string allowances_of(const Comparison& comparison, const CompareRules& rules);
 
 /// For people: one paragraph a layer, the verdict with its allowances at the end.

@@ -7,7 +7,7 @@
 
 namespace aftershade {
 
-/// What differences a comparison forgives; at most one of the two. Forgiveness (forgiveness.h) defines both.
+/// Differences that a comparison forgives; at most one of the two. Forgiveness (forgiveness.h) defines both.
 struct Forgive {
     static constexpr int kMaxShift_px = 64;
     static constexpr double kMaxBlur_px = 32;
@@ -41,20 +41,18 @@ inline constexpr StoredPrecision kStoredHalf{10, -14, 0};
 /// When a pixel counts as failing. A pixel's difference is, by role:
 ///   color, display, alpha, data   the largest |reference - test| of its channels;
 ///   depth       |reference - test| / |reference|: infinity equals infinity of its sign, 0 equals 0;
-///   velocity    the end-point error in px: the length of the difference of the vectors; four channels are
-///   two
-///               vectors (X Y, Z W), of which the worse counts;
+///   velocity    the end-point error in px: the length of the difference of the vectors; four
+///               channels are two vectors (X Y, Z W), of which the larger error counts;
 ///   id          0 where all bits are equal, else infinite.
 /// Where a channel is NaN in one image or (without `nan_equal`) in both, or infinite in one or with another
-/// sign, the pixel's difference is infinite and the pixel fails whatever the limit.
+/// sign, the pixel's difference is infinite and the pixel fails at any limit.
 ///
-/// `fail_relative` R lets differences pass that are in the last digits of a large value: of color, display,
-/// alpha and data a channel counts where |reference - test| > R (|reference| + |test|) / 2, of velocity a
-/// vector, by lengths. Depth is relative already. It holds for `fail`, not for `hard_fail`, as idiff's
-/// -failrelative.
+/// `fail_relative` R lets rounding of a large value pass. For color, display, alpha and data, a channel
+/// counts if |reference - test| > R (|reference| + |test|) / 2; for velocity a vector counts, by lengths.
+/// Depth is relative already. It holds for `fail`, not for `hard_fail`, as idiff's -failrelative.
 ///
 /// `fail_ulp` N lets a difference pass, for `fail` and `hard_fail`, that is at most N units in the last place
-/// of what the coarser of both files stores, at the larger of both magnitudes. The lengths of its vectors
+/// of the coarser file's type, at the larger of both magnitudes. The lengths of its vectors
 /// count for velocity.
 struct DifferenceRules {
     double fail = 1e-6;  ///< a pixel fails above it

@@ -23,8 +23,8 @@ double pixels_per_degree(double distance_m, double width_px, double width_m);
 struct FlipOptions {
     double pixels_per_degree = 67.020643;  ///< a display 0.7 m broad, 3840 px wide, 0.7 m away
     ToneMapper tone_mapper = ToneMapper::aces;
-    /// Of HDR-FLIP, in stops. nullopt: from the reference; one that would be on the wrong side of the other,
-    /// given one is set equal to it.
+    /// Exposures of HDR-FLIP, in stops. nullopt: from the reference. If that is on the wrong side of a
+    /// given exposure, it is set equal to the given one.
     std::optional<double> start_exposure, stop_exposure;
     std::optional<int> exposures;  ///< nullopt: max(2, ceil(stop - start))
     int threads = 0;               ///< 0: as many as there are cores; changes no bit

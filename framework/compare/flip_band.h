@@ -11,7 +11,7 @@
 
 namespace aftershade {
 
-/// What is done to linear light before LDR-FLIP.
+/// The transform of linear light before LDR-FLIP.
 struct FlipExposure {
     ToneMapper mapper = ToneMapper::aces;
     float scale = 1;
@@ -36,7 +36,7 @@ public:
     void add(int first, int last, const FlipExposure& exposure, Image& error);
 
 private:
-    /// What is kept of a row of one image after the filters across.
+    /// The values of a row of one image after the horizontal filters.
     enum Plane { kY, kCx, kCz1, kCz2, kSmooth, kFirst, kSecond, kPlanes };
     using Row = std::vector<float>;
 

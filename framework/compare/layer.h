@@ -1,4 +1,4 @@
-// What is compared with what: the channels of a picture file in layers, each with a role that says how.
+// The layers of a picture file: channels that are compared together, by a role.
 #pragma once
 
 #include <optional>
@@ -44,7 +44,7 @@ struct LayerInfo {
     std::string key() const { return part + "\n" + name + "\n" + group; }
 };
 
-/// `part` empty: the only one of its file. What its channels lack of a name, the part's says: R, G and B of
+/// `part` empty: the only one of its file. A channel without a layer's name has the part's: R, G and B of
 /// the part "N" are plain numbers, X and Y of "velocity" are one layer.
 std::vector<LayerInfo> layers_of_channels(const std::string& part, std::span<const ExrChannel> channels,
                                           const Window& data_window, const Window& display_window);

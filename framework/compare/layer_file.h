@@ -14,7 +14,7 @@
 
 namespace aftershade {
 
-/// What the values of a file's layers do not say.
+/// Properties of a file besides the values of its layers.
 struct FileTraits {
     std::string colors;  ///< what the numbers of colours mean: "sRGB", "rec709"
     float pixel_aspect = 1;
@@ -33,7 +33,7 @@ class LayerFile {
 public:
     /// Throws Error(ErrorKind::capture) that begins with the path: missing, no such format, deep, damaged.
     explicit LayerFile(const std::filesystem::path& path, const ReadLimits& limits = {});
-    /// Of an OpenEXR file that is open.
+    /// Takes an OpenEXR file that is open.
     explicit LayerFile(OpenFile exr, const ReadLimits& limits = {});
     ~LayerFile();
     LayerFile(LayerFile&&) noexcept;

@@ -9,8 +9,8 @@
 
 namespace aftershade {
 
-/// For each pixel of an image, row by row, what it is held to: 0 the layer's limits, kLeftOut nothing, i the
-/// limits limits[i - 1] of an area. Empty: every pixel is held to the layer's. [value type]
+/// The limits of each pixel of an image, row by row: 0 the layer's limits, kLeftOut none, i the limits
+/// limits[i - 1] of an area. Empty: the layer's limits for every pixel. [value type]
 struct PixelAreas {
     static constexpr std::uint8_t kLeftOut = 255;
     static constexpr std::size_t kMost = 254;  ///< areas with limits of their own

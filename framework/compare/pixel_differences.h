@@ -44,8 +44,8 @@ struct NonFiniteCounts {
 /// compare only where their eps is this.
 inline constexpr double kRelativeMseEpsilon = 1e-2;
 
-/// Of the pixels that are not left out. Means run over the values that are finite in both images (`values` of
-/// them), in double precision. Only the counts of LimitCounts forgive.
+/// Figures of the pixels that are not left out. Means run over the values that are finite in both images
+/// (`values` of them), in double precision. Only the counts of LimitCounts forgive.
 struct PixelDifferences : LimitCounts {  ///< its counts: of each pixel by the limits that hold there
     std::uint64_t left_out = 0;          ///< pixels; not among `pixels`
     std::uint64_t forgiven = 0;  ///< pixels whose own difference fails, and that pass because it is forgiven

@@ -26,7 +26,7 @@ struct SsimFigures {
     bool measured = true;  ///< false where no pixel with a window counts
 };
 
-/// Of encoded values in 0..1, of 1 to 4 channels, each by itself: 1 for equal images. Both images have one
+/// SSIM of encoded values in 0..1, for each of 1 to 4 channels; 1 for equal images. Both images have one
 /// size (asserted) and are finite. The figures do not depend on `threads`, 0: as many as there are cores.
 ///
 /// SSIM: population variances; mean over the pixels whose window lies inside, as scikit-image with

@@ -1,7 +1,7 @@
 // The grammar of a document, declared once: the parser's checks, the JSON Schema and the tables of the docs
 // come from one declaration.
 //
-// How to declare a document. A `Block` is one kind of object, its `Key`s say by a `Form` what stands there:
+// How to declare a document. A `Block` is one kind of object, its `Key`s declare values by a `Form`:
 //
 //     const Block& lens_block() {
 //         static const Block block{
@@ -17,7 +17,7 @@
 //     }
 //
 // A document's own block has `is_document`. Objects of several kinds ("type": "point") have a `selector` and
-// `kinds`. What no form says is `custom`; what a rule cannot say, whoever reads the values checks. Then
+// `kinds`. A form that no other covers is `custom`. The reader of the values checks rules beyond these. Then
 //
 //     check(node, lens_block(), diagnostics);           every fault, with its place
 //     Reader(node, lens_block()).integer("blades");     values, or declared defaults (grammar_reader.h)
@@ -67,7 +67,7 @@ struct Keyed {
     std::size_t interpolation = 0;            ///< among interpolation_names()
 };
 
-/// What a value may be. Copies share what they refer to. [any thread]
+/// The form of a value. Copies share what they refer to. [any thread]
 class Form {
 public:
     explicit Form(std::shared_ptr<const FormType> type) : type_(std::move(type)) {}
@@ -229,7 +229,7 @@ Form with_variables(Form form, schema::Variables variables = schema::Variables::
 Form written_as(Form form, Form written);
 /// In tables, `type` stands for what the form would say of itself.
 Form shown_as(Form form, std::string type);
-/// What no other form says.
+/// A form that no other covers.
 struct Custom {
     std::string type;           ///< in tables
     std::string schema = "{}";  ///< JSON
@@ -249,7 +249,7 @@ Rule together(std::vector<std::string> keys, std::string fault = "");
 /// Where `key` is, `other` is too.
 Rule needs(std::string key, std::string other, std::string fault = "");
 
-/// What else holds for an object whose `key` is `value`.
+/// Further rules for an object whose `key` is `value`.
 struct When {
     std::string key;
     std::string value = {};  ///< JSON; "": anything, where the key is there

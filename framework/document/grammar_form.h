@@ -1,4 +1,4 @@
-// What forms and rules of a grammar are made of; for the sources that define them. grammar.h declares
+// The base of a grammar's forms and rules, for the sources that define them. grammar.h declares
 // the forms and rules themselves.
 #pragma once
 
@@ -64,9 +64,9 @@ public:
     virtual std::optional<Keyed> keyed(const Node&) const { return std::nullopt; }
     /// A sound value of a parameter's type.
     virtual std::optional<ParamValue> value(const Node&) const { return std::nullopt; }
-    /// Of a choice; empty for others.
+    /// The choices of a choice; empty for other forms.
     virtual std::vector<std::string> choices() const { return {}; }
-    /// Of a list; nullptr for others.
+    /// The form of a list's items; nullptr for other forms.
     virtual const Form* item() const { return nullptr; }
 };
 
@@ -75,7 +75,7 @@ class RuleType {
 public:
     virtual ~RuleType() = default;
     virtual void check(const Node& node, const std::string& thing, Diagnostics& diagnostics) const = 0;
-    /// What is put into the schema of the object.
+    /// The part for the schema of the object.
     virtual schema::json schema(SchemaScope& scope) const = 0;
     virtual std::string sentence() const = 0;  ///< "" for none
 };

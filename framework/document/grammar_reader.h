@@ -32,7 +32,7 @@ public:
     const Node* find(std::string_view key) const;
     /// Whether the document itself has a sound value.
     bool has(std::string_view key) const;
-    /// Of the document's value, else of the object.
+    /// Place of the document's value, else of the object.
     const Place& place(std::string_view key) const;
 
     bool boolean(std::string_view key) const;
@@ -48,11 +48,11 @@ public:
         return Enum(choice_index(key));
     }
 
-    /// Of a literal: numbers by frame, in the declared unit.
+    /// A literal's numbers by frame, in the declared unit.
     Keyed keyed(std::string_view key) const;
-    /// Of a literal that stands for every frame, as numbers.
+    /// The numbers of a literal that holds for every frame.
     std::vector<double> components(std::string_view key) const { return keyed(key).values.at(0); }
-    /// Of a list of such literals; those that are not sound are left out.
+    /// The numbers of a list of such literals, without those that have faults.
     std::vector<std::vector<double>> component_list(std::string_view key) const;
     std::optional<ParamValue> value(std::string_view key) const;
 

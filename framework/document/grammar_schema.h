@@ -7,7 +7,7 @@
 
 namespace aftershade::grammar {
 
-/// Of a document, as a file's text.
+/// The JSON Schema of a document, as a file's text.
 std::string schema_text(const std::string& title, const Block& document);
 
 }  // namespace aftershade::grammar

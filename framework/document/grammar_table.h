@@ -10,8 +10,8 @@
 
 namespace aftershade::grammar {
 
-/// The keys of one block, those of all its kinds too; a column that says nothing is left out. What its rules
-/// say stands below. Ends in a line break; "" for a block without keys.
+/// The keys of one block, those of all its kinds too; an empty column is left out. The text of its rules
+/// follows. Ends in a line break; "" for a block without keys.
 std::string table_of(const Block& block);
 /// A table of the keys of one kind of the block alone.
 std::string table_of_kind(const Block& kind);
@@ -20,8 +20,8 @@ std::string reference_of(const Block& document);
 
 /// Tables by name: "golden.case".
 using Tables = std::map<std::string, std::string>;
-/// Of every block that the documents refer to, as "<document>.<block>"; of one that two have in common, only
-/// the first's.
+/// The table of every block that the documents refer to, as "<document>.<block>". A block that two documents
+/// share has one table, under the first one's name.
 Tables tables_of(const std::vector<std::pair<std::string, const Block*>>& documents);
 
 /// The page with its marked regions written again:

@@ -45,7 +45,7 @@ inline constexpr ParamType ParamType::float_{kFloatParam}, ParamType::int_{kIntP
     ParamType::vec4{kVec4Param}, ParamType::curve{kCurveParam}, ParamType::file{kFileParam},
     ParamType::table{kTableParam}, ParamType::objects{kObjectsParam};
 
-/// The types that need nothing but core, in the order of messages and schemas. [thread-safe]
+/// The types that need only core, in the order of messages and schemas. [thread-safe]
 std::span<const ParamType> core_param_types();
 
 /// A function of one variable through points, x rising; constant before the first and after the last.
@@ -68,7 +68,7 @@ struct TableValue {
     bool operator==(const TableValue&) const = default;
 };
 
-/// What a value holds that only its type's own module defines. Immutable, since values share it.
+/// The part of a value that only its type's own module defines. Immutable, since values share it.
 /// [thread-safe]
 class ValueContent {
 public:
@@ -96,7 +96,7 @@ private:
 using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue,
                                 TableValue, OpaqueValue>;
 
-/// What a file parameter names: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
+/// The file of a file parameter: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
 enum class FileKind { image, lut };
 
 /// "requires": ["> focal_length"]: how this value stands to another parameter's, units minded.
@@ -141,7 +141,7 @@ bool is_block_type(ParamType type);
 bool is_scalar_type(ParamType type);
 /// Names a file, which the host reads.
 bool is_file_type(ParamType type);
-/// Reaches shaders through a texture, whatever its value; of a file only where there is one.
+/// Reaches shaders through a texture for any value; a file parameter only if it has a file.
 bool is_param_texture(ParamType type);
 /// Reaches shaders through a storage block, looked up by object.
 bool is_param_buffer(ParamType type);
@@ -168,8 +168,8 @@ struct SweepValue {
 std::vector<SweepValue> sweep_values(const ParamSpec& spec);
 
 /// Reads one entry of a manifest's "params", which is of one of `types`; check() has found it sound by
-/// param_block() (param_grammar.h). nullopt after a fault that leaves nothing usable. What `requires` names
-/// is checked by check_relation_declarations, once all parameters are known.
+/// param_block() (param_grammar.h). nullopt after a fault that leaves nothing usable.
+/// check_relation_declarations checks the names in `requires`, once all parameters are known.
 std::optional<ParamSpec> read_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
                                          std::span<const ParamType> types);
 /// The same with the check.
@@ -181,8 +181,8 @@ std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& n
 std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& node, const std::string& label,
                                             Diagnostics& diagnostics);
 
-/// The value as a document would write it, without unit; one line. Of a table, a row's cells stand in the
-/// order of its columns under "cells": the value does not hold their names.
+/// The value as a document would write it, without unit; one line. A row of a table has its cells in the
+/// order of its columns under "cells", because the value does not hold their names.
 std::string format_value(const ParamValue& value);
 /// The same with the columns' names, as a document would write a table too.
 std::string format_value(const ParamSpec& spec, const ParamValue& value);

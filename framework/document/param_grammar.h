@@ -13,7 +13,7 @@
 
 namespace aftershade {
 
-/// What a parameter of a type may be "from". Without: any text.
+/// Allowed values of "from" for a parameter of a type. Empty: any text.
 using ParamSources = std::function<std::vector<std::string>(ParamType type)>;
 
 /// One entry of a manifest's "params", which is of one of `types`. read_param_spec() checks what a default

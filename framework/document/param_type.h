@@ -1,6 +1,6 @@
-// What a parameter's type is: all that differs between types, in one table entry each. A new type is a file
-// like those of framework/document/param_types and a line in the list of core_param_types() or, where it
-// needs more than core, of framework/effect/param_types.cpp.
+// The type of a parameter: one table entry has everything that differs between types. A new type is a file
+// like those of framework/document/param_types and a line in the list of core_param_types(). A type that
+// needs more than core has its line in framework/effect/param_types.cpp.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -57,7 +57,7 @@ struct TexelSize {
     int channels = 1;  ///< 1 or 4, each a 32-bit float
 };
 
-/// Of a resource: its texture, read by texelFetch alone.
+/// Traits of a resource's texture, which texelFetch alone reads.
 struct ParamTextureTraits {
     std::string_view label;  ///< after the parameter's name, in the frame graph
     TexelSize (*size)(const ParamValue& value) = nullptr;
@@ -67,7 +67,7 @@ struct ParamTextureTraits {
     std::string (*glsl)(const ParamSpec& spec, int binding) = nullptr;
 };
 
-/// Of a resource: its storage block, looked up by object. Its rows have `columns` of the spec.
+/// Traits of a resource's storage block, looked up by object. Its rows have `columns` of the spec.
 struct ParamTableTraits {
     std::size_t (*entries)(const ParamValue& value) = nullptr;  ///< count_entries() of its rows
     TableValue (*rows)(const ParamValue& value) = nullptr;
@@ -108,7 +108,7 @@ struct ParamTypeTraits {
     std::string (*type_text)(const ParamSpec& spec) = nullptr;
     /// For people, without unit; null: as `format`.
     std::string (*default_text)(const ParamSpec& spec) = nullptr;
-    /// Of its own keys, what `describe --json` says; null: nothing.
+    /// The type's own keys for `describe --json`; null: none.
     nlohmann::ordered_json (*describe)(const ParamSpec& spec) = nullptr;
 
     // block: must be there
@@ -125,7 +125,7 @@ struct ParamTypeTraits {
     std::string (*defines)(const ParamSpec& spec, const ParamValue& value) = nullptr;
     /// How far light goes that moves as the value says, mm; null: it says nothing of that.
     double (*length_mm)(const ParamValue& value) = nullptr;
-    /// What the value has from files that documents name; null: nothing.
+    /// The content that the value takes from files that documents name; null: none.
     std::string (*content)(const ParamValue& value) = nullptr;
 };
 

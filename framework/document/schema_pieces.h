@@ -37,14 +37,14 @@ void define_variable(json& definitions);
 /// A literal of the parameter's type. With variables, one may stand for it and for any part of it.
 json literal(const ParamSpec& spec, Variables variables = Variables::no);
 
-/// What the literals of one document's kind are made of.
+/// The pieces of literals in one kind of document.
 class LiteralParts {
 public:
     explicit LiteralParts(Variables variables) : variables_(variables) {}
     Variables variables() const { return variables_; }
     /// A variable may stand for the part where there are variables.
     json part(json form) const;
-    /// Of the parameter, or the column, that is part of another.
+    /// Schema of the parameter, or the column, that is part of another.
     json literal(const ParamSpec& spec) const;
     /// A table's row: the cells, and by one key which objects it is for.
     json keyed_row(json cells) const;

@@ -17,9 +17,9 @@ public:
     explicit TableKeyReader(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
     static bool is_key(std::string_view word);
-    /// Of a row: one of 'object', 'objects' and 'name'. `label` is the row's.
+    /// Reads the key of a row: one of 'object', 'objects' and 'name'. `label` names the row.
     std::vector<TableKey> read_row(ObjectReader& reader, const Node& node, const std::string& label);
-    /// Of a list: 3, "3-7,9" or "Wheel".
+    /// Reads an item of a list: 3, "3-7,9" or "Wheel".
     std::vector<TableKey> read_item(const Node& node, const std::string& label);
     /// Reports what more than one of those read is for. Call once, last.
     void check_overlaps();

@@ -15,20 +15,19 @@ namespace aftershade {
 /// The images that a compute shader may have: GL has at least as many (OpenGL 4.5 core, table 23.71).
 inline constexpr int kMostComputeImages = 8;
 
-/// What a draw hands to its shader without the shader's text saying so.
+/// Inputs that a draw gives to its shader without a declaration in the shader's text.
 struct DrawShape {
     std::vector<gpu::TextureFormat> targets;  ///< by location
     int first_target_unit = 0;                ///< image units of the targets, which rise from it
     bool has_levels = false;                  ///< some sampler sees several levels of its texture
-    /// Of a pass over tiles: the name of its buffer of rectangles. The block of glsl/host/tiles.vert is
-    /// bound.
+    /// Name of the buffer of rectangles, for a pass over tiles. The block of glsl/host/tiles.vert is bound.
     std::optional<std::string> tile_runs{};
 };
 
 /// Makes of `source`, which draws, a compute shader for gpu::dispatch_over(): gl_FragCoord becomes a
 /// variable, the outputs too, which are stored once main() has ended, unless that discarded the pixel. Keeps
-/// the lines. Returns what keeps the shader from it, "" where nothing does: "reads gl_FrontFacing". What is
-/// left to be found out is whether the driver takes the text.
+/// the lines. Returns the reason against it, such as "reads gl_FrontFacing", or "". The driver may still
+/// refuse the text.
 std::string to_compute_form(ShaderSource& source, const DrawShape& shape);
 
 }  // namespace aftershade

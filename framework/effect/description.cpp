@@ -46,7 +46,7 @@ std::string input_flags(const InputSpec& input) {
     if (input.history) flags += ", with the frame before";
     if (input.layer >= 0) flags += ", of layer " + std::to_string(input.layer);
     if (input.from_capture) flags += ", the capture's own";
-    if (!input.instead.empty()) flags += " where there is " + input.instead;
+    if (!input.instead.empty()) flags += " if there is " + input.instead;
     if (input.frame == -1) flags += ", of the frame before";
     if (input.frame == 1) flags += ", of the next frame";
     if (std::abs(input.frame) > 1)
@@ -198,8 +198,8 @@ std::string type_text(const ParamSpec& spec) {
 std::string default_text(const ParamSpec& spec) {
     const auto own = spec.type->default_text;
     const std::string value = own ? own(spec) : format_value(spec, spec.default_value);
-    return value + (spec.unit.empty() ? "" : " " + spec.unit) +
-           (spec.from.empty() ? "" : "; before it " + spec.from);
+    return (spec.from.empty() ? "" : spec.from + ", else ") + value +
+           (spec.unit.empty() ? "" : " " + spec.unit);
 }
 
 std::string describe_text(const EffectManifest& manifest, bool verbose) {

@@ -13,7 +13,7 @@ std::string type_text(const ParamSpec& spec);
 /// The default with its unit, and where it comes from before that: "3 m, else camera.focus_distance".
 std::string default_text(const ParamSpec& spec);
 
-/// What `describe` prints: parameters, presets, inputs, outputs; `verbose`: sources, textures, telemetry,
+/// The text of `describe`: parameters, presets, inputs, outputs; `verbose`: sources, textures, telemetry,
 /// passes too.
 std::string describe_text(const EffectManifest& manifest, bool verbose);
 /// The same as one JSON object; its keys are the manifest's, with every default filled in.

@@ -1,4 +1,4 @@
-// What a manifest and its shaders may do and seldom should.
+// Warnings about manifests and shaders that are allowed and likely wrong.
 #pragma once
 
 #include <filesystem>

@@ -10,9 +10,9 @@
 
 namespace aftershade {
 
-/// What may be read of a parameter's value: all of it, or of one that reaches shaders through a texture or a
-/// storage block only what decides sizes and text. Contents of tables, curves and profiles change without a
-/// new graph.
+/// The readable part of a parameter's value: all of it. For a value that reaches shaders through a texture or
+/// a storage block, only the part that decides sizes and text. Contents of tables, curves and profiles change
+/// without a new graph.
 enum class ParamAspect {
     value,
     table_entries,  ///< int: entries of its table
@@ -30,7 +30,7 @@ class ParamReader {
 public:
     using Note = std::function<void(const std::string& name, ParamAspect aspect, const ParamValue& answer)>;
 
-    /// Of a text that no value decides: nothing may be read.
+    /// A reader for texts that depend on no value: it may read none.
     ParamReader() = default;
     /// Without notes. Implicit: most readers of a ParamSet build no graph.
     ParamReader(const ParamSet& params) : params_(&params) {}
@@ -39,13 +39,13 @@ public:
     bool has(const std::string& name) const { return params_ && params_->has(name); }
     /// The whole value.
     const ParamValue& get(const std::string& name) const;
-    /// Of a type with a table.
+    /// Entries of the table, for a type with a table.
     std::size_t table_entries(const ParamSpec& spec) const;
-    /// Of a type with a texture.
+    /// Size of the texture, for a type with a texture.
     TexelSize texture_size(const ParamSpec& spec) const;
-    /// Of a type with such lines.
+    /// Preprocessor lines, for a type with such lines.
     std::string defines(const ParamSpec& spec) const;
-    /// Of one number.
+    /// Whether one number is not 0.
     bool is_nonzero(const std::string& name) const;
 
 private:

@@ -26,7 +26,7 @@ struct ParamTexture {
     std::vector<float> texels;  ///< layer after layer, rows from the top, channels interleaved
 };
 
-/// What a file parameter's path holds; nothing for "".
+/// The content of a file parameter's path; none for "".
 using ParamFile = std::variant<std::monostate, Image, Lut>;
 
 /// Reads the file of a file parameter; "" is none. Relative paths are the caller's to resolve. nullopt after
@@ -44,7 +44,7 @@ inline constexpr int kLutRow = 4096;
 ///     image   sampler2D stain, stain_size       vec4(w, h, 1/w, 1/h); HAS_STAIN
 ///     lut     vec3 grade(vec3 rgb)              clamped to its domain, tetrahedral; HAS_GRADE
 ///
-/// "" for a file parameter without a file. Of a LUT the text holds size, dimension and domain, so that it
+/// "" for a file parameter without a file. For a LUT the text has size, dimension and domain, so that it
 /// differs between LUTs of different shape.
 std::string param_sampler_glsl(const ParamSpec& spec, const ParamFile& file, int binding);
 
@@ -58,9 +58,9 @@ std::string param_sampler_glsl(const ParamSpec& spec, const ParamFile& file, int
 /// default and does not search.
 std::string param_table_glsl(const ParamSpec& spec, int binding, bool has_rows = true);
 
-/// Of a texture of 1 or 4 channels: r32f or rgba32f.
+/// The format of a texture with 1 or 4 channels: r32f or rgba32f.
 gpu::TextureFormat param_texture_format(int channels);
-/// What its type makes of a value. There must be a texture of that type: is_param_texture().
+/// The texels that its type makes of a value. There must be a texture of that type: is_param_texture().
 ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value);
 /// rgba32f. There must be a file. A 3-D LUT has blue for its layer, green its row; a 1-D one is laid out in
 /// rows of kLutRow.

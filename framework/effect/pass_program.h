@@ -58,7 +58,7 @@ public:
     ProgramSources sources_of(const ShaderContext& context, Diagnostics& faults);
     std::shared_ptr<const gpu::Program> get(const ShaderContext& context, const ProgramSources& sources,
                                             Diagnostics& faults);
-    /// Of several passes as one program.
+    /// Sources of several passes as one program.
     ProgramSources sources_of(const FusedProgram& passes, Diagnostics& faults) const;
     /// Throws gpu::ShaderError where the driver does not take it.
     std::shared_ptr<const gpu::Program> get(const ProgramSources& sources);
@@ -80,8 +80,8 @@ public:
     bool is_guarding_loops() const { return guards_loops_; }
     const std::filesystem::path& glsl_folder() const { return glsl_folder_; }
     const ProgramStore& store() const { return store_; }
-    /// Of a program that get() made or loaded: how large the driver writes it, by which long ones are known;
-    /// 0 where that is unknown.
+    /// Size in the driver's format of a program that get() made or loaded, which shows long programs; 0 if it
+    /// is unknown.
     std::size_t binary_bytes(const ProgramSources& sources) const;
     /// Sentences on passes whose shader leaves a target out, since the last call.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }

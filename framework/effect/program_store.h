@@ -32,7 +32,7 @@ public:
 
     bool is_on() const { return !folder_.empty(); }
     const std::filesystem::path& folder() const { return folder_; }
-    /// Makes the folder. What keeps programs from being kept in it, with the remedy; "" where nothing does.
+    /// Makes the folder. Returns the reason why it cannot keep programs, with the remedy, or "".
     std::string fault() const;
     /// The key is all that the program depends on: sources, renderer, versions.
     std::optional<gpu::ProgramBinary> load(const std::string& key) const;

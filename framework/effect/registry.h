@@ -28,7 +28,7 @@ public:
     /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.
     std::vector<std::string> ids() const;
     bool contains(const std::string& id) const { return folders_.contains(id); }
-    /// Of the effect; nullptr where there is none.
+    /// The effect's folder; nullptr for an unknown effect.
     const std::filesystem::path* folder(const std::string& id) const;
     /// A warning for each folder that could not be read; what it holds is left out.
     void warn_of_unreadable(Diagnostics& diagnostics) const;

@@ -1,5 +1,5 @@
-// What the text of a shader does with its samplers: which it only fetches single texels of, through the
-// functions and the macros that it hands them to.
+// The use of samplers in the text of a shader: those from which it only fetches single texels, including
+// through functions and macros.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace aftershade {
 struct SamplerType {
     std::string_view prefix, shape;
 };
-/// Of 2-D samplers and arrays of them.
+/// The type that the word names, for 2-D samplers and arrays of them.
 std::optional<SamplerType> sampler_type(std::string_view word);
 
 /// texelFetch(name, p, 0) or textureSize(name, 0), by places among the tokens.

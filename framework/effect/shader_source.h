@@ -36,7 +36,7 @@ inline constexpr int kCameraBinding = 3;
 inline constexpr int kPassBinding = 4;  ///< only in passes with `repeat`
 inline constexpr int kNativeBinding = 5;
 inline constexpr int kLightsBinding = 6;  ///< only of effects with "uses": ["lights"]
-/// Of glsl/host/tiles.vert: the block, and the storage block with the rectangles of tiles.
+/// Bindings of glsl/host/tiles.vert: the block, and the storage block with the rectangles of tiles.
 inline constexpr int kTilesBinding = 7;
 inline constexpr int kTileRunsBinding = 0;
 
@@ -70,14 +70,14 @@ private:
     std::map<std::string, File> files_;
 };
 
-/// What one pass sees, resolved for one set of parameters and inputs.
+/// The inputs of one pass, resolved for one set of parameters and inputs.
 struct ShaderContext {
     const EffectManifest* manifest = nullptr;
     const PassSpec* pass = nullptr;
     ParamReader params;                       ///< define-bound values become preprocessor symbols
     std::vector<std::string> present_inputs;  ///< optional inputs that the frame has
     std::filesystem::path glsl_folder;
-    /// What the paths of file parameters hold, by parameter; nullptr or no entry: none has a file.
+    /// The content of file parameters, by parameter; nullptr or no entry: none has a file.
     const std::map<std::string, ParamFile>* files = nullptr;
     const FusedPart* part = nullptr;  ///< nullptr: the pass is a program by itself
     ShaderTexts* texts = nullptr;     ///< of several passes; nullptr: reads the pass's files itself
@@ -100,7 +100,7 @@ struct PassBindings {
     bool has_param_block = false;
     bool has_pass_block = false;
     bool has_native_block = false;
-    /// Of a pass that lists tiles, or draws over them with a vertex shader of its own: the block of sizes
+    /// For a pass that lists tiles, or draws over them with a vertex shader of its own, the block of sizes
     /// ends with a vec4 `tile_grid_size`, how many texels of the tile list's grid the pass's target has, or
     /// what the list is of. Other draws over tiles have it in the block of glsl/host/tiles.vert.
     bool has_tile_grid = false;
@@ -109,14 +109,14 @@ struct PassBindings {
 /// Pointers are into the context's manifest.
 PassBindings pass_bindings(const ShaderContext& context);
 
-/// Of a draw of instances there are two shaders, of every other pass one.
+/// A draw of instances has two shaders, every other pass one.
 enum class ShaderFile { main, vertex };
 
 /// Where a pass's shader begins: the author's file, or the host's own where tiles are listed or drawn over.
 std::filesystem::path shader_path(const PassSpec& pass, ShaderFile file,
                                   const std::filesystem::path& glsl_folder);
 
-/// Of a texel as GLSL declares it: float, uint, vec2, uvec4.
+/// The type of a texel as GLSL declares it: float, uint, vec2, uvec4.
 std::string texel_type(gpu::TextureFormat format);
 
 /// Bounds of a shader with its includes. A driver's compiler does not give up by itself: Mesa 22.3.6 runs out
@@ -134,7 +134,7 @@ struct ShaderInclude {
     bool is_shared = false;  ///< in <>, else in quotation marks
 };
 
-/// What a line of a shader includes; nullopt for every other line.
+/// The file that a line of a shader includes; nullopt for every other line.
 std::optional<ShaderInclude> parse_include(std::string_view line);
 
 /// Faults (a missing include, a shader that does not begin as it must) go to `diagnostics`.
@@ -150,7 +150,7 @@ ShaderSource author_text(const EffectManifest& manifest, const PassSpec& pass,
 /// The texture of a pass that lists tiles by it, where TileListSpec::has_common_text().
 inline const std::string kListedSampler = "listed";
 
-/// What `#include <pass>` stands for; a vertex shader's has no outputs.
+/// The text of `#include <pass>`; a vertex shader's has no outputs.
 std::string interface_glsl(const ShaderContext& context, ShaderFile file = ShaderFile::main);
 
 /// The reads of a pass that are there: textures and inputs that are present, where their conditions hold.
@@ -194,7 +194,7 @@ struct PassBlock {
     std::int32_t padding[2] = {0, 0};
 };
 
-/// The block `frame`; the same for every pass of a frame but for `step_seed`.
+/// The block `frame`; the same for every pass of a frame except `step_seed`.
 struct FrameBlock {
     std::int32_t display_size_px[2] = {0, 0};  ///< of the display window, at the rendered scale
     std::int32_t origin_px[2] = {0, 0};  ///< display-window pixel of texel (0, 0), at the rendered scale

@@ -1,4 +1,4 @@
-// What a shader uses of what a manifest declares, by its words. Internal to framework/effect.
+// The declared names that a shader uses, by its words. Internal to framework/effect.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace aftershade {
 
-/// What a target's name in GLSL begins with.
+/// The prefix of a target's name in GLSL.
 inline constexpr std::string_view kOut = "out_";
 
 struct ShaderUses {
@@ -27,7 +27,7 @@ struct ShaderUses {
     Uses outputs;   ///< x of out_x, but for names that the shader declares itself
     Words written;  ///< out_x that a statement assigns to, or that a call or a macro may
     Uses unset;     ///< variables of functions that are read, but to which nothing is assigned
-    /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., but for parameters of functions.
+    /// x of texelFetch(x, ...), texture(x, ...), textureLod(x, ...), ..., except parameters of functions.
     Uses samplers;
     Uses plain_samplers;          ///< those outside of every #if: what stands within may be left out
     Uses sizes;                   ///< x of x_size, but for names of the shader's own

@@ -1,4 +1,4 @@
-// What a manifest declares against what its shaders use, by their text; needs no GL.
+// Compares a manifest's declarations with the use in its shaders, by their text; needs no GL.
 #pragma once
 
 #include <filesystem>

@@ -20,7 +20,7 @@
 
 namespace aftershade {
 
-/// What a reader accepts before it allocates anything.
+/// Limits of a reader, which it checks before it allocates memory.
 struct ReadLimits {
     int max_side_px = 16384;  ///< of the data and the display window
     std::uint64_t max_image_bytes =
@@ -78,7 +78,7 @@ struct ExrPart {
     std::map<std::string, std::string> other_names;
 };
 
-/// What one call of read_floats or read_uints requests.
+/// A request of one call of read_floats or read_uints.
 struct ExrRequest {
     int part = 0;
     std::vector<std::string> channels;
@@ -89,9 +89,9 @@ struct ExrRequest {
 /// Whether it is a file that begins as OpenEXR files do.
 bool is_exr_file(const std::filesystem::path& path);
 
-/// An open file. Headers are read and held against the limits on construction; nothing larger than a header
-/// is allocated before. Every failure is Error(ErrorKind::capture) that begins with the path. [one thread at
-/// a time]
+/// An open file. The constructor reads headers and checks them against the limits; it allocates nothing
+/// larger than a header before. Every failure is Error(ErrorKind::capture) that begins with the path. [one
+/// thread at a time]
 class ExrFile {
 public:
     explicit ExrFile(const std::filesystem::path& path, const ReadLimits& limits = {});
@@ -118,9 +118,9 @@ public:
     /// the reads, which report it; so is a request that shares a channel with one before it.
     void prefetch(std::span<const ExrRequest> requests) const;
     /// The samples of the named channels of a deep part (of level 0 where tiled); half becomes float, uint
-    /// stays. Sample counts are read first, and held against the limits before there is memory for the
-    /// samples; without channels they are all that is read. Flat parts, incomplete files and channels that do
-    /// not exist are errors.
+    /// stays. Sample counts are read first, and checked against the limits before memory for the samples is
+    /// allocated; without channels only the counts are read. Flat parts, incomplete files and channels that
+    /// do not exist are errors.
     DeepImage read_deep(int part, std::span<const std::string> channels) const;
     /// RGBA of a part that stores luminance Y, or Y with subsampled RY and BY, as OpenEXR's own RgbaInputFile
     /// converts it, to half precision.
@@ -170,7 +170,7 @@ std::vector<HalfOverflow> write_exr(const std::filesystem::path& path,
 void write_deep_exr(const std::filesystem::path& path, const DeepImage& image,
                     const ExrWriteOptions& options);
 
-/// What ExrWriteOptions::compression may be: what the OpenEXR of this build has, from "none" and "rle" to
+/// Values of ExrWriteOptions::compression: those of this build's OpenEXR, from "none" and "rle" to
 /// "dwab"; from 3.4 on also "htj2k256" and "htj2k32", from 3.5 on "lj2k" and "zstd".
 const std::vector<std::string>& exr_compression_names();
 
@@ -180,7 +180,7 @@ std::optional<int> exr_compression_level(std::string_view text);
 /// Whether a compression may change values: b44, b44a, dwaa, dwab, lj2k, and pxr24, which shortens floats.
 bool is_lossy_compression(std::string_view name);
 
-/// What to do with a file of deep data: "flatten it: oiiotool IN --flatten -o OUT.exr".
+/// The remedy for a file of deep data: "flatten it: oiiotool IN --flatten -o OUT.exr".
 std::string exr_flatten_remedy(const std::filesystem::path& path);
 
 /// Threads that OpenEXR uses for compression, process-wide; 0 does the work on the caller's thread.

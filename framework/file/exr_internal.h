@@ -109,7 +109,7 @@ private:
     std::uint64_t position_ = 0;
 };
 
-/// What the header of a file says before the library has allocated anything for it.
+/// The header of a file, read before the library allocates memory for the file.
 struct FileLayout {
     bool multi_part = false;
     std::vector<Imf::Header> headers;
@@ -144,8 +144,8 @@ bool read_scan_lines(FileStream& file, const FileLayout& layout, int part, const
 /// Whether read_scan_lines and write_scan_lines take it: none, zips and zip.
 bool is_scan_line_method(Imf::Compression method);
 
-/// Writes a file of one part of scan lines as the library does, but for how deflate packs. The images have
-/// the data window's size. Returns what halfs could not hold; throws what `stream` does.
+/// Writes a file of one part of scan lines as the library does, except for deflate's packing. The images have
+/// the data window's size. Returns the values that halfs could not hold; throws as `stream` does.
 std::vector<HalfOverflow> write_scan_lines(Imf::OStream& stream, const Imf::Header& header,
                                            std::span<const ExrOutputChannel> channels);
 std::uint64_t scan_line_blocks(const Imf::Header& header);
@@ -164,7 +164,7 @@ struct DeepSource {
 };
 
 /// The samples of the named channels of a deep part, level 0 where tiled. The sizes of the blocks and the
-/// counts of samples are held against the file and the limits first. Throws Error(ErrorKind::capture).
+/// counts of samples are first checked against the file and the limits. Throws Error(ErrorKind::capture).
 DeepImage read_deep(const DeepSource& source, int part, std::span<const std::string> names);
 
 bool is_tiled_part(const Imf::Header& header);
@@ -176,7 +176,7 @@ std::string block_label(const Imf::Header& header, std::uint64_t index);
 void require_no_missing_block(const std::filesystem::path& path, const Imf::Header& header,
                               std::span<const std::uint64_t> offsets);
 
-/// What every file begins with.
+/// The first bytes of every file.
 inline constexpr std::string_view kMagic = "\x76\x2f\x31\x01";
 
 ExrPart describe_part(const Imf::Header& header);
@@ -195,7 +195,7 @@ std::string library_reason(const std::exception& error);
 /// Whether the library says by this that an allocation failed.
 bool is_memory_text(std::string_view text);
 
-/// Runs `work`; whatever it throws leaves as Error(code), "<path>: <what>: <reason>", or as
+/// Runs `work`; any exception leaves as Error(code), "<path>: <what>: <reason>", or as
 /// Error(ErrorKind::memory).
 template <class Work>
 decltype(auto) translate_errors(const std::filesystem::path& path, ErrorKind code, const char* what,

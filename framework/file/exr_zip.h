@@ -1,6 +1,6 @@
-// What OpenEXR's ZIP does to a block's bytes before they are packed ("Technical Introduction to OpenEXR",
-// Data Compression): bytes at even places before those at odd ones, then each byte less the one before it,
-// plus 128.
+// The transform of OpenEXR's ZIP on a block's bytes before they are packed ("Technical Introduction to
+// OpenEXR", Data Compression): bytes at even places before those at odd ones, then each byte less the one
+// before it, plus 128.
 #pragma once
 
 #include <cstddef>

@@ -21,7 +21,7 @@ enum class StreamFormat { rgb24, rgba, rgb48le, rgba64le, png };
 const std::vector<std::string>& stream_format_names();
 std::optional<StreamFormat> find_stream_format(std::string_view name);
 
-/// What ffmpeg needs before `-i -`: "-f rawvideo -pixel_format rgb24 -video_size 480x270 -framerate 24".
+/// The options of ffmpeg before `-i -`: "-f rawvideo -pixel_format rgb24 -video_size 480x270 -framerate 24".
 /// Rates of NTSC are written as the fractions that they stand for.
 std::string ffmpeg_input_options(StreamFormat format, int width, int height, double frames_per_second);
 

@@ -16,7 +16,7 @@ struct ManifestEntry {
     std::optional<std::uint32_t> id;  ///< nullopt where the manifest has none, or one that is none
 };
 
-/// What stands before "/name", "/manifest" and "/manif_file" of each Cryptomatte that a header names:
+/// The prefix of "/name", "/manifest" and "/manif_file" of each Cryptomatte that a header names:
 /// "cryptomatte/3ae39a5".
 std::vector<std::string> cryptomatte_keys(const ExrMetadata& metadata);
 

@@ -7,13 +7,13 @@
 
 namespace aftershade {
 
-/// What a PNG's numbers mean. OpenEXR files are linear, and are read as they are.
+/// The meaning of a PNG's numbers. OpenEXR files are linear, and are read unchanged.
 enum class PictureSpace { srgb, data };
 
 /// An OpenEXR or PNG file, recognised by its first bytes, as RGBA floats. OpenEXR: channels R, G, B and A of
 /// the first part over its data window (a missing colour channel is 0, alpha 1), or its luminance. PNG, 8 or
 /// 16 bits: srgb is decoded to linear and premultiplied by alpha, as OpenEXR stores it; data is value /
-/// maximum, whatever the file's colour chunks say. Of srgb the chunk gAMA counts; an ICC profile, cICP or
+/// maximum, for any colour chunks of the file. For srgb the chunk gAMA counts; an ICC profile, cICP or
 /// cHRM that is not sRGB's is refused. Grey becomes three equal channels. Throws Error(ErrorKind::capture)
 /// that begins with the path.
 Image read_picture(const std::filesystem::path& path, PictureSpace space);

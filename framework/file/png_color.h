@@ -1,4 +1,4 @@
-// What the samples of a PNG mean: its colour chunks.
+// The meaning of a PNG's samples: its colour chunks.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ namespace aftershade {
 /// Latin-1 text by keyword, as the PNG specification's chunk tEXt has it: a keyword of 1 to 79 characters.
 using PngText = std::map<std::string, std::string>;
 
-/// What a picture's own chunks say of it.
+/// The information in a picture's chunks.
 struct PngMeaning {
     bool is_srgb = false;    ///< chunk sRGB; false colours and measures are not a display's
     float pixel_aspect = 1;  ///< width over height; other than 1 in the chunk pHYs
@@ -34,7 +34,7 @@ void write_png(const std::filesystem::path& path, const Image& display, const Pn
 /// The text of a keyword; nullopt where the file is not a whole PNG or has no such text.
 std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);
 
-/// What the chunks of a whole PNG say; nullopt of any other file.
+/// The information in the chunks of a complete PNG; nullopt for any other file.
 std::optional<PngColor> read_png_color(const std::filesystem::path& path);
 
 /// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored; `color` gets what they mean.

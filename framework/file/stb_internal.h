@@ -75,7 +75,7 @@ inline void* take_again(void* pointer, std::size_t old_bytes, std::size_t bytes)
 
 namespace aftershade::stb {
 
-/// Of a picture as floats; the same as ReadLimits::max_image_bytes for OpenEXR.
+/// Largest size of a picture as floats; the same as ReadLimits::max_image_bytes for OpenEXR.
 inline constexpr std::uint64_t kMaxImageBytes = 512ull * 1024 * 1024;
 
 /// Why a picture of this size is not read; "" where it is. Then stb may take what it needs for it: the pixels

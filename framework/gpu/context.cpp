@@ -221,7 +221,7 @@ void Context::Impl::set_state() {
     gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     gl.Disable(GL_DITHER);
-    // docs/design.md, Conventions: NDC y up, z in [0, 1], texel row 0 at the top.
+    // docs/architecture.md, Conventions: NDC y up, z in [0, 1], texel row 0 at the top.
     gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     gl.CreateVertexArrays(1, &vertex_array);
     gl.CreateProgramPipelines(1, &pipeline);

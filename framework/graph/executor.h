@@ -45,12 +45,12 @@ public:
     /// Without effect for a culled pass.
     void set_uniforms(int pass, int binding, std::vector<std::byte> bytes);
 
-    /// What a pass has just written: its name and its targets and written images, by their names in the
+    /// The name of a pass that has just run, and its targets and written images, by their names in the
     /// graph.
     using PassObserver =
         std::function<void(const std::string& pass, const std::string& texture, const gpu::Texture& target)>;
 
-    /// What is done around each pass, by its name.
+    /// Called around each pass, with its name.
     struct PassHooks {
         std::function<void(const std::string& pass)> begins;
         std::function<void(const std::string& pass)> ended;  ///< may throw: the frame is lost then
@@ -65,8 +65,8 @@ public:
     /// only these, so that some passes may run several times in a frame; what was written before stays.
     std::vector<PassTime> run(bool timed, const PassObserver& observer = {}, PassRange range = {});
 
-    /// What the next run will read as `previous`, by the history's name; only those that some pass reads. To
-    /// be read; the pointers hold until the next run.
+    /// The textures that the next run will read as `previous`, by the history's name; only those that some
+    /// pass reads. To be read; the pointers hold until the next run.
     struct History {
         std::map<std::string, gpu::Texture*> textures;
         std::map<std::string, gpu::Buffer*> buffers;
@@ -82,8 +82,8 @@ public:
     std::vector<std::string> take_history_from(Executor& other);
 
 private:
-    /// What a pass binds. The pointers go to slots, which never move; a history's two slots exchange what
-    /// they hold.
+    /// The bindings of a pass. The pointers go to slots, which never move; a history's two slots exchange
+    /// what they hold.
     struct BoundPass {
         const Pass* pass = nullptr;
         std::vector<gpu::SampledTexture> textures;
@@ -101,7 +101,7 @@ private:
         };
         std::vector<Observed> observed;
     };
-    /// What is set to its `clear` before a pass.
+    /// Resources that are set to their `clear` before a pass.
     struct Clears {
         struct OfTexture {
             int index = 0;  // in the graph

@@ -76,7 +76,7 @@ constexpr bool runs_program(PassKind kind) {
     return kind != PassKind::clear && kind != PassKind::copy;
 }
 
-/// What `instances` draws: `count` times four vertices of a strip (quads) or one point; or as many as the
+/// The size of `instances`: `count` times four vertices of a strip (quads) or one point; or as many as the
 /// buffer says (DrawArraysIndirectCommand).
 struct Instances {
     gpu::Primitive primitive = gpu::Primitive::quads;
@@ -121,16 +121,17 @@ struct Pass {
     Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
     Fusing fusing = Fusing::never;
-    /// Of a draw, or of instances that are tiles, whose program is a compute shader that stores the targets
-    /// as images: the unit of the first. -1: fragments draw them.
+    /// Unit of the first target, for a draw or for instances that are tiles, if their program is a compute
+    /// shader that stores the targets as images. -1: fragments draw them.
     int first_target_unit = -1;
-    std::string why_drawn{};  ///< why a compute shader cannot do that; "" where it does, or none is wanted
+    /// Why a compute shader cannot do that; "" where it does, or where none was requested.
+    std::string why_drawn{};
 
     bool computes() const { return kind == PassKind::compute || first_target_unit >= 0; }
 };
 
-/// What a pass made: new versions of what it wrote. A texture that a pass writes in several places (two
-/// layers, say) becomes one new version.
+/// The results of a pass: new versions of the resources that it wrote. A texture that a pass writes in
+/// several places (two layers, say) becomes one new version.
 struct Written {
     std::vector<TextureHandle> targets{};  ///< one for each of Pass::targets
     std::vector<TextureHandle> images{};   ///< one for each of Pass::images; as it was where that only reads
@@ -148,8 +149,8 @@ struct BufferDesc {
     bool operator==(const BufferDesc&) const = default;
 };
 
-/// What survives into the next frame: `current` is written, and becomes `previous` when the frame ends.
-/// Where no pass writes `current` in a frame, `previous` stays as it was.
+/// A resource that survives into the next frame: `current` is written, and becomes `previous` when the frame
+/// ends. Where no pass writes `current` in a frame, `previous` stays as it was.
 struct TextureHistory {
     TextureHandle previous;  ///< readable from the beginning; zero where there was no frame before
     TextureHandle current;

@@ -1,4 +1,4 @@
-// What FrameGraph refuses. Internal to framework/graph.
+// The checks of FrameGraph. Internal to framework/graph.
 #pragma once
 
 #include <string_view>

@@ -8,7 +8,7 @@
 
 namespace aftershade::graph {
 
-/// What a fused pass may have of each, all its parts counted.
+/// Limits of a fused pass, over all its parts.
 struct FusionLimits {
     int parts = 8;
     int samplers = 16;
@@ -30,7 +30,7 @@ struct Fusion {
     std::vector<TextureHandle> targets;  ///< what of their results something else needs
 };
 
-/// Of the passes that `compiled` runs. A pass that follows joins the one that makes what it reads by the
+/// Groups the passes that `compiled` runs. A later pass joins the one that makes what it reads by the
 /// pixel, if nothing that lies between needs the results earlier, or changes what the earlier ones read, and
 /// if memory would keep every bit of the texel. Results that others need, too, stay targets.
 std::vector<Fusion> find_fusions(const FrameGraph& graph, const CompiledGraph& compiled,

@@ -9,7 +9,7 @@
 
 namespace aftershade::graph {
 
-/// What a pass binds, without what it holds: textures of a few texels whose sides are powers of two where
+/// The bindings of a pass without their content: textures of a few texels whose sides are powers of two where
 /// those of the graph are, since the code that fetches from them differs.
 struct PassShape {
     /// `memory`: the format of the memory, of which the texture is a view where its own differs.

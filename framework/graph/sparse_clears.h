@@ -12,7 +12,7 @@
 
 namespace aftershade::graph {
 
-/// What CompiledGraph::sparse says, from frame to frame. On software GL a clear writes every texel, and tile
+/// Performs CompiledGraph::sparse from frame to frame. On software GL a clear writes every texel, and tile
 /// lists leave most of them as they are. [the context's thread; refers to what the executor keeps]
 class SparseClears {
 public:

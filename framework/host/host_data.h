@@ -1,4 +1,4 @@
-// What a Host holds, and what stands around each call of it.
+// The data of a Host, and the frame around each call.
 #pragma once
 
 #include <atomic>

@@ -19,7 +19,7 @@ namespace aftershade::host {
 std::shared_ptr<const Capture::Data> meet_non_finite(std::shared_ptr<const Capture::Data> capture,
                                                      NonFinite policy, std::vector<NonFiniteInfo>& found);
 
-/// What reading noted of a capture.
+/// NaN and infinite pixels that reading noted in a capture.
 std::vector<NonFiniteInfo> non_finite_of(const aftershade::Capture& capture);
 std::vector<NonFiniteInfo> non_finite_of(const std::vector<NonFiniteOutput>& outputs);
 

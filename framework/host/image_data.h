@@ -1,4 +1,4 @@
-// What the API's images and captures hold.
+// The data of the API's images and captures.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ struct FrameResult;
 
 namespace aftershade::host {
 
-/// Of images of the caller's, and the most that HostLimits::max_side_px may be.
+/// Largest side of the caller's images, and the largest value of HostLimits::max_side_px.
 inline constexpr int kMaxSide_px = 65536;
 
 struct Image::Data {
@@ -47,7 +47,7 @@ struct Sequence::Data {
 class Access {
 public:
     static Image image(std::shared_ptr<const aftershade::Image> pixels);
-    /// Of an image with pixels.
+    /// The pixels of an image that has some.
     static const aftershade::Image& pixels(const Image& image) { return *image.data_->pixels; }
     /// Throws Error(usage) for one that was moved from.
     static Host::Data& host(const Host& host);
@@ -58,7 +58,7 @@ public:
     static const Capture::Data& data(const Capture& capture) { return *capture.data_; }
     static std::shared_ptr<const Capture::Data> share(const Capture& capture) { return capture.data_; }
     static Capture capture(Capture::Data data);
-    /// What the modules below made of the frame.
+    /// The frame's result in the modules below.
     static const FrameResult& frame(const Result& result);
     static std::shared_ptr<const Sequence::Data> share(const Sequence& sequence) { return sequence.data_; }
     static Sequence sequence(std::shared_ptr<const Sequence::Data> data) { return Sequence(std::move(data)); }

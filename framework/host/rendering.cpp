@@ -123,7 +123,7 @@ void Rendering::prepare(const RenderOptions& options) {
                 fmt::format("{:g} is not above 0 and finite", options.fps));
     if (int(options.non_finite) < int(NonFinite::ignore) || int(options.non_finite) > int(NonFinite::mend))
         fail_at(ErrorKind::usage, "RenderOptions::non_finite",
-                fmt::format("{} is none of its values", int(options.non_finite)));
+                fmt::format("{} is not one of its values", int(options.non_finite)));
     if (options.stop.stop_requested()) fail(ErrorKind::interrupted, "a stop was requested");
     if ((!options.targets.empty() || options.wait) && !host_->options.share)
         fail_at(ErrorKind::usage, "RenderOptions", "targets and wait need HostOptions::share");

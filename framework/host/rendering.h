@@ -56,7 +56,7 @@ public:
     /// those that are none or that nothing makes.
     std::vector<std::string> asked_roles(const RenderOptions& options,
                                          const std::vector<std::string>& captured) const;
-    /// What follows a frame, however it was rendered: statistics, targets, fence.
+    /// The steps after any frame: statistics, targets, fence.
     void finish(const RenderOptions& options, const std::vector<std::string>& roles, Result::Data& result);
     /// Sets the renderer up for these options. Throws Error(usage) for what is out of range.
     void prepare(const RenderOptions& options);

@@ -15,7 +15,7 @@ const std::vector<CameraField>& camera_fields() {
         {"sensor_width", "mm", 0.1, "Sensor, as wide as the display window."},
         {"f_number", "", 0.01, "Focal length over the aperture's diameter."},
         {"blades", "", 0, "Corners of the aperture; 0 is a disk."},
-        {"rotation", "deg", -1e6, "Of the aperture; 0 puts the middle of a straight edge at +x."},
+        {"rotation", "deg", -1e6, "Rotation of the aperture; 0 puts the middle of a straight edge at +x."},
         {"shutter_angle", "deg", 0, "360 is the whole frame."},
         {"near", "m", 0, "The plane where a stored depth begins."},
         {"far", "m", 0, "The plane where a stored depth ends."},

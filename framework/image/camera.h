@@ -1,4 +1,4 @@
-// What is known of a capture's camera: lens and sensor as numbers, and where it stands.
+// The known values of a capture's camera: lens, sensor and position.
 #pragma once
 
 #include <array>
@@ -30,7 +30,8 @@ const CameraField* find_camera_field(const std::string& name);
 
 /// Before the name of a field where parameters say what they are "from": "camera.focus_distance".
 inline constexpr std::string_view kFromCamera = "camera.";
-/// What a parameter of this type may be "from": the lens model for an enum, the fields for every other type.
+/// Allowed values of "from" for a parameter of this type: the lens model for an enum, the fields for every
+/// other type.
 std::vector<std::string> camera_sources(ParamType type);
 /// Whether the field's numbers convert to the parameter's unit.
 bool converts_to(const CameraField& field, const ParamSpec& spec);
@@ -51,7 +52,7 @@ public:
         values_[name] = value;
         origins_[name] = origin;
     }
-    /// Of a field that is known, or "lens_model".
+    /// Origin of a known field, or of "lens_model".
     std::string origin(const std::string& name) const;
     void set_lens_model(const std::string& name, const std::string& origin);
     const std::map<std::string, double>& values() const { return values_; }

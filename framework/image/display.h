@@ -1,4 +1,4 @@
-// What a display shows of scene-linear colours.
+// The transform from scene-linear colours to a display.
 #pragma once
 
 #include "framework/image/color_space.h"

@@ -16,7 +16,7 @@
 
 namespace aftershade {
 
-/// What is wrong with a pixel; a later one outweighs an earlier one.
+/// Faults of a pixel; a later one takes precedence over an earlier one.
 enum class PixelFault { none, negative, infinite, nan };
 inline constexpr std::array kPixelFaults = {PixelFault::negative, PixelFault::infinite, PixelFault::nan};
 std::string_view pixel_fault_name(PixelFault fault);
@@ -35,7 +35,7 @@ DisplayColor diverging_color(float t);
 /// Neighbouring ids get hues far apart: multiples of the golden ratio (Knuth, TAOCP 3, 6.4). 0 is black.
 DisplayColor id_color(std::uint32_t id);
 
-/// What explains the colours beside the words.
+/// The drawing in the legend, in addition to its words.
 enum class Legend { none, ramp, wheel };
 
 /// The word for an image without a role, such as an effect's texture: one channel is shown as

@@ -5,7 +5,7 @@
 
 namespace aftershade {
 
-/// What roles beside the fixed ones are named like: "aov:mist".
+/// The form of names of roles besides the fixed ones: "aov:mist".
 grammar::Pattern aov_pattern();
 
 /// The name of a role.

@@ -12,7 +12,7 @@ using DisplayColor = std::array<float, 3>;  ///< encoded, 0..1
 
 constexpr int kTextLineHeight_px = 12;  ///< at scale 1
 
-/// Width in px of one line at scale 1. Anything but printable ASCII counts, and is drawn, as '?'.
+/// Width in px of one line at scale 1. Characters other than printable ASCII count, and are drawn, as '?'.
 int text_width_px(std::string_view text);
 
 /// Draws one line with its upper left corner at (x, y), every dot as a square of scale x scale px; what does

@@ -1,4 +1,5 @@
-// What an image means. One table serves reading, wiring, filtering rules and writing (docs/conventions.md).
+// Roles: the meanings of images. One table serves reading, wiring, filtering rules and writing
+// (docs/conventions.md).
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 
 namespace aftershade {
 
-/// What a role's values measure. Code that treats roles differently tests their kind, so that a new role
-/// needs no change there.
+/// The quantity that a role's values measure. Code that treats roles differently tests their kind, so that a
+/// new role needs no change there.
 enum class RoleKind {
     light,      ///< scene-linear colours in the capture's primaries
     distance,   ///< m along the view axis
@@ -78,7 +79,7 @@ struct RoleOfLayer {
     int layer = -1;  ///< -1: not of a layer, but of the whole picture
     std::string role;
 };
-/// What a name that layer_role() made stands for; any other name is itself.
+/// The role in a name that layer_role() made; any other name is itself.
 RoleOfLayer split_layer_role(std::string_view name);
 
 /// Whether the values of layers are put over one another, as light is; of others the layer that shows most

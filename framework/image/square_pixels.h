@@ -9,7 +9,7 @@ namespace aftershade {
 
 /// Pixels are stretched along the axis on which they are long: `to` square ones stand for `from` of them.
 /// Pixel p of the display window, counted from its corner, becomes the pixels edge(p) to edge(p + 1) - 1, at
-/// least one: the same ones in whatever data window it lies.
+/// least one: the same ones in any data window.
 struct PixelStretch {
     int axis = 0;  ///< 0: x, 1: y
     std::int64_t to = 1;

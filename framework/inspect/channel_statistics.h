@@ -1,4 +1,4 @@
-// What the stored values of a channel are, for people who look for the fault in a capture.
+// Statistics of a channel's stored values, for people who look for the fault in a capture.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct ChannelStatistics {
     std::uint64_t negative = 0;  ///< below zero, -inf too, -0 not
 };
 
-/// Of each channel.
+/// Statistics of each channel.
 std::vector<ChannelStatistics> channel_statistics(const Image& image);
 
 /// A channel of a file, with its figures or why there are none.

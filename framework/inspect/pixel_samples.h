@@ -1,4 +1,4 @@
-// What files store at one pixel, and how many samples deep pixels have.
+// Stored values at one pixel, and the numbers of samples of deep pixels.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct SampleCount {
     std::uint64_t pixels = 0;
 };
 
-/// Of a deep part: 0, 1, 2, 3 to 4, 5 to 8, ... samples, as far as there are any. Reads counts alone. Throws
-/// Error(ErrorKind::capture).
+/// Pixels of a deep part with 0, 1, 2, 3 to 4, 5 to 8, ... samples, up to the largest count. Reads only
+/// counts. Throws Error(ErrorKind::capture).
 std::vector<SampleCount> sample_histogram(const ExrFile& file, int part);
 
 /// The stored values of a part at one pixel: a list for each sample, of flat parts one. Empty outside of the

@@ -1,4 +1,4 @@
-// What is wrong with the images of a frame's roles, by themselves and held against each other and the camera.
+// Faults of the images of a frame's roles: each by itself, and compared with the others and the camera.
 #pragma once
 
 #include <string>

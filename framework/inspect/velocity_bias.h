@@ -24,7 +24,7 @@ struct OtherReading {
     bool is_common_value = false;
 };
 
-/// What the range and the most common value of the stored vectors of both frames hint at.
+/// Hints from the range and the most common value of the stored vectors of both frames.
 std::vector<OtherReading> other_readings(const std::vector<Image>& stored, const VelocitySettings& claim);
 
 /// "1298 pixels are stored as 1, the end of the range 0 to 1"; "" where no values pile up at a limit.

@@ -121,8 +121,8 @@ std::string describe_no_fit(const VelocityCheck& check) {
             "the motion",
             percent(check.best.score), percent(check.identity.score));
     return fmt::format(
-        "{}, but free scales remove {}; change {}, or ask the producer what one unit and the time of the "
-        "vectors are",
+        "{}, but free scales remove {}; change {}, or ask the producer for the unit and the time of the "
+        "vectors",
         none_fits, percent(check.fit->score), describe_change(check.settings, check.suggested));
 }
 

@@ -1,4 +1,4 @@
-// What is known of a capture's motion vectors: the claim of its profile, its rivals, the verdict.
+// The check of a capture's motion vectors: the profile's claim, its rivals, the verdict.
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ struct VelocitySettings {
     bool operator==(const VelocitySettings&) const = default;
 };
 
-/// What to do to the decoded vectors before they explain the pictures; the default is the profile's claim.
+/// The change of the decoded vectors that makes them explain the pictures; the default is the profile's
+/// claim.
 struct VelocityHypothesis {
     /// velocity is in truth next - cur and read in A; velocity_next is cur - prev and read in B.
     bool other_time = false;
@@ -73,8 +74,8 @@ struct VelocityCheck {
     std::string at_limit;  ///< "1298 pixels ... are stored as 1, ..."; "" where no values pile up at a limit
     VelocitySettings settings;   ///< as given
     VelocitySettings suggested;  ///< `settings` where nothing better is known
-    /// What these frames do not tell, in the profile's words: "delta" (its sign), "delta (cur-prev or
-    /// next-cur)", "y_axis", "order of channels", "scale", "bias".
+    /// Settings that these frames leave undecided, in the profile's words: "delta" (its sign), "delta
+    /// (cur-prev or next-cur)", "y_axis", "order of channels", "scale", "bias".
     std::vector<std::string> untold;
     int moving_px_a = 0;  ///< pixels with vectors of at least one pixel
     int moving_px_b = 0;

@@ -31,7 +31,7 @@ struct Move {
     double x = 0, y = 0;  ///< px
 };
 
-/// What is done to a vector: exchange its components where `swapped`, then multiply.
+/// The change of a vector: exchange its components where `swapped`, then multiply.
 struct VectorMap {
     bool swapped = false;
     double x = 1;

@@ -1,4 +1,4 @@
-// What a look's effects and values are made of, as text to be hashed.
+// The content of a look's effects and values, as text to be hashed.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +15,12 @@ namespace aftershade {
 std::vector<std::filesystem::path> files_of_pipeline(const Pipeline& pipeline,
                                                      const std::filesystem::path& glsl_folder);
 
-/// What the files hold that the step's parameters and its mask name, and scattering profiles by what they
-/// say. Throws Error(ErrorKind::usage) for a file that cannot be read.
+/// The content of the files that the step's parameters and its mask name, and of scattering profiles.
+/// Throws Error(ErrorKind::usage) for a file that cannot be read.
 std::string content_of_values(const PipelineStep& step);
 
 /// The manifest, its modules' manifests, native sources, and every shader with what it includes: each file's
-/// name and bytes, whatever folder it lies in. Throws Error(ErrorKind::usage) for a file that cannot be read.
+/// name and bytes, in any folder. Throws Error(ErrorKind::usage) for a file that cannot be read.
 std::string content_of_effect(const EffectManifest& manifest, const std::filesystem::path& glsl_folder);
 
 }  // namespace aftershade

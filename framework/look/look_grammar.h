@@ -1,5 +1,5 @@
-// The grammar of a look, declared once (framework/document/grammar.h). What the parameters, inputs and
-// presets of each effect are its manifest says.
+// The grammar of a look, declared once (framework/document/grammar.h). The manifest of each
+// effect declares its parameters, inputs and presets.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 // JSON Schema (draft 2020-12) of looks, made from the declarations of the effects that they may use.
 //
-// What an editor completes and marks is what the program takes and refuses, as far as a schema can say it:
-// that names which another document declares (steps, variables) exist, and how two values relate: only the
-// program checks that.
+// An editor completes and marks the same as the program accepts and refuses, as far as a schema allows. Only
+// the program checks that names which another document declares (steps, variables) exist, and how two values
+// relate.
 #pragma once
 
 #include <string>

@@ -1,6 +1,5 @@
-// What of a look met nothing in the frames: objects that it names and no frame has had, steps that work on
-// all objects although few are likely meant, and scattering too narrow to be seen. Nothing else would show
-// it.
+// Silent misses of a look: objects that it names and no frame contains, steps that work on all objects
+// although few are likely meant, and scattering too narrow to be visible. No other check reports them.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +27,7 @@ public:
     void look_at(const Capture& capture);
     /// The error with the place that names the object, before it.
     Error placed(const UnknownObject& error) const;
-    /// What look_at() found since the last call, for a process that gathers it from several.
+    /// Sightings that look_at() found since the last call, for a process that gathers them from several.
     std::vector<ObjectSighting> take_sightings();
     void add(const ObjectSighting& sighting);
     /// A sentence with place and remedy for each value or mask whose objects no frame had, and for each step

@@ -49,8 +49,8 @@ struct PipelineStep {
 
     /// Whether the input's conditions may hold: with values that differ from frame to frame they may.
     bool may_take(const InputSpec& input) const;
-    /// Every value that the parameter may have, whatever the frame, but for what only the capture holds: the
-    /// user's, by keys all of them, else the manifest's. Paths of files are complete.
+    /// Every value that the parameter may have in any frame, except those that only the capture holds: the
+    /// user's value (all of its keys), else the manifest's. Paths of files are complete.
     std::vector<ParamValue> known_values(const ParamSpec& spec) const;
 };
 
@@ -130,7 +130,7 @@ Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const Pipeline
 /// The value with the path of a file, where it is one, named from `folder`; "" stays "".
 ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder);
 
-/// What every step takes from the host: "mix", 0 to 1.
+/// The parameter that every step has from the host: "mix", 0 to 1.
 const ParamSpec& mix_spec();
 
 /// A role that the pipeline requires and a capture lacks.

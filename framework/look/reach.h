@@ -1,4 +1,4 @@
-// What the pixels of a region depend on: found backwards, from what a look outputs to the capture.
+// The pixels that a region depends on, found backwards from a look's outputs to the capture.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ std::optional<RegionNeeds> needs_of_region(const Pipeline& pipeline, double scal
 /// The same where steps work on square pixels: a stored pixel is at least as large as one of these.
 std::optional<RegionNeeds> in_stored_pixels(const RegionNeeds& needs, const PixelStretch& stretch);
 
-/// Whether each of its passes reads nothing but its own pixel.
+/// Whether each of its passes reads only its own pixel.
 bool is_pointwise(const EffectManifest& manifest);
 
 /// `region` with what it needs, inside `data`, which is the window of the whole frame; both as rendered.

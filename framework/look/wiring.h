@@ -1,4 +1,5 @@
-// What a look's "in" gives to an input: a role of the capture, or an output or a texture of an earlier step.
+// The source of an input in a look's "in": a role of the capture, or an output or a texture of an earlier
+// step.
 #pragma once
 
 #include <optional>
@@ -13,8 +14,8 @@ namespace aftershade {
 /// names, `index` in the pipeline, or nullptr and -1 for the capture.
 ///
 /// An input of a role aov:<name> takes any image of floats: any role, output or texture, a texture in its own
-/// size. An input of another role takes that role; and a texture that has the working grid's size, the role's
-/// kind of numbers and at least its channels. Of a texture with levels it is level 0. Names of outputs come
+/// size. An input of another role takes that role, or a texture that has the working grid's size, the role's
+/// kind of numbers and at least its channels. A texture with levels gives level 0. Names of outputs come
 /// before those of textures. nullopt where it does not fit, which `diagnostics` then reports.
 std::optional<InputSource> wired_source(const WiringSpec& wiring, const InputSpec& input,
                                         const EffectManifest& effect, const EffectManifest* maker, int index,

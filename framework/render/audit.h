@@ -18,7 +18,7 @@ struct AuditFinding {
     int y = 0;
 };
 
-/// What is looked at, and how a finding names it. [refers to the values]
+/// An audited image, and its name in a finding. [refers to the values]
 struct AuditedImage {
     std::span<const float> values;
     int width = 0;

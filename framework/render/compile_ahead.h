@@ -15,7 +15,7 @@
 
 namespace aftershade {
 
-/// What a pass needs before it can be drawn, in the order of the passes.
+/// Programs that a pass needs before it can be drawn, in the order of the passes.
 struct PassToCompile {
     std::string pass;  ///< its name in the graph
     std::shared_ptr<const ProgramSources> sources;
@@ -26,7 +26,7 @@ struct PassToCompile {
 /// Threads that begin with the last pass, while the caller links from the first one on, and then draw the
 /// longest of what it linked; where it comes to a pass that a thread is at, it does so too meanwhile. They
 /// hand over by two caches: programs by the ProgramStore, and the machine code that llvmpipe makes at a first
-/// draw by Mesa's own, since no context sees another one's. What they cannot compile they leave to the
+/// draw by Mesa's own, since no context sees another one's. They leave programs that do not compile to the
 /// caller, who then meets the fault in its own order. [one thread, that of the context; threads of its own]
 class CompileAhead {
 public:
@@ -60,10 +60,10 @@ public:
     };
     /// Before the caller draws a pass: no thread works on it from now on.
     void take(const std::string& pass);
-    /// What the threads compiled so far.
+    /// Programs that the threads have compiled so far.
     int programs_made() const;
     int passes_drawn() const;
-    /// What the caller drew ahead while it waited.
+    /// Passes that the caller drew ahead while it waited.
     int passes_drawn_here() const { return passes_drawn_here_; }
 
 private:

@@ -14,7 +14,7 @@
 
 namespace aftershade {
 
-/// What is known of the frame that was rendered before this one, and belongs to the same shot.
+/// The frame that was rendered before this one and belongs to the same shot.
 struct FrameBefore {
     bool history_valid = false;
     std::optional<Camera> camera;

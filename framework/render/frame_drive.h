@@ -19,7 +19,7 @@ struct FrameSetting {
     double scale = 1;  ///< of the capture's pixels relative to those that values in px refer to
     double fps = 24;
 
-    /// What resolving and rendering take. `centre`: FrameInputs::centre. [refers to the captures]
+    /// Inputs of resolving and rendering. `centre`: FrameInputs::centre. [refers to the captures]
     FrameInputs inputs(const Capture& capture, int subframe = 0, const Capture* centre = nullptr) const;
 };
 

@@ -1,4 +1,4 @@
-// What a graph is given from outside before its passes run: images, parameters, uniform blocks.
+// Inputs that a graph receives before its passes run: images, parameters, uniform blocks.
 #pragma once
 
 #include <cstddef>

@@ -25,7 +25,7 @@
 
 namespace aftershade {
 
-/// What every graph of a pipeline is made with. [refers to what the caller keeps]
+/// Tools that make every graph of a pipeline. [refers to what the caller keeps]
 struct GraphTools {
     gpu::Context& context;
     ProgramCache& programs;
@@ -61,7 +61,7 @@ private:
     graph::TextureHandle import(const std::string& role, int offset = 0);
     graph::TextureHandle resolve(const InputSource& source, int offset = 0);
     void use_grid_of(int step);
-    /// What `source` is, `handle`, on the grid that is in use.
+    /// `handle`, which is `source`, on the grid that is in use.
     graph::TextureHandle on_grid(graph::TextureHandle handle, const InputSource& source);
     void declare(StepBuild& build);
     void require_written(const StepBuild& build, const InputSpec& input, graph::TextureHandle handle) const;
@@ -122,7 +122,7 @@ private:
 
 /// Extent of a grid over a working grid of width x height px.
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height);
-/// What glsl/host/copy.frag is compiled with.
+/// Defines of glsl/host/copy.frag.
 std::vector<std::string> copy_defines(gpu::TextureFormat format);
 /// One number for all four, or four.
 std::array<double, 4> four_values(const std::vector<double>& values);

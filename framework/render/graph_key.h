@@ -1,4 +1,4 @@
-// What a frame graph was built from: everything that its build asked of a frame, with the answers.
+// The key of a frame graph: every fact about a frame that its build read.
 #pragma once
 
 #include <compare>
@@ -83,7 +83,7 @@ public:
     bool wants(const std::string& role);
     /// Refers to this reader.
     ParamReader params(int step);
-    /// Of a step with native code.
+    /// Whether native code enables the pass of its step.
     bool native_enabled(int step, const std::string& pass);
     /// `otherwise` where the code says nothing of it.
     int native_turns(int step, const std::string& pass, int otherwise);

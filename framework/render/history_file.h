@@ -38,7 +38,8 @@ struct SavedHistory {
     std::string give_to(const graph::Executor::History& history) const;
 };
 
-/// What a history depends on besides its frames, one line each: steps, effects with versions, wiring, values.
+/// Facts that a history depends on besides its frames, one line each: steps, effects with versions, wiring,
+/// values.
 std::string history_identity(const Pipeline& pipeline);
 /// The first line in which two identities differ, for messages.
 std::string difference_of_identities(const std::string& saved, const std::string& now);

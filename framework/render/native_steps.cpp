@@ -89,10 +89,10 @@ void NativeSteps::prepare(const Pipeline& pipeline, const FrameInputs& frame,
                                before->second.warm_up_frames != result.warm_up_frames ||
                                before->second.overscan_px != result.overscan_px;
         if (asks_anew && result.warm_up_frames > 0)
-            messages_.push_back(step.name + ": wants " + std::to_string(result.warm_up_frames) +
+            messages_.push_back(step.name + ": needs " + std::to_string(result.warm_up_frames) +
                                 " frames before the first one that counts");
         if (asks_anew && result.overscan_px > 0)
-            messages_.push_back(step.name + ": wants " + std::to_string(result.overscan_px) +
+            messages_.push_back(step.name + ": needs " + std::to_string(result.overscan_px) +
                                 " px of overscan");
         results_[i] = std::move(result);
     }

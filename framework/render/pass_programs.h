@@ -39,7 +39,7 @@ public:
     };
     explicit PassPrograms(const Tools& tools) : tools_(tools) {}
 
-    /// What is read of shaders' files.
+    /// Content of shaders' files.
     ShaderTexts& texts() { return texts_; }
     /// The pass that will have this index in the graph.
     void add(int pass, const ShaderContext& shader, const PipelineStep& step);

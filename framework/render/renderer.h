@@ -55,8 +55,8 @@ public:
     ~PipelineRenderer();
 
     /// Builds the first frame's graph and has the driver make its programs, before the frame's pixels are
-    /// known: images of `frame` are empty. What render() finds different then, it builds again, and what
-    /// fails here, fails there. Does nothing unless can_build_ahead(). Throws Error(ErrorKind::memory).
+    /// known: images of `frame` are empty. If render() finds differences, it builds the graph again. Failures
+    /// here occur there again. Does nothing unless can_build_ahead(). Throws Error(ErrorKind::memory).
     void build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles);
     /// Whether there is no graph yet, and no step needs more than a frame's header: native code is called
     /// once a frame, and values may be measured in the pixels.
@@ -72,7 +72,7 @@ public:
     FrameResult render_again(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// How many programs of the last graph the threads of RendererOptions compiled.
     int programs_compiled_ahead() const;
-    /// Of the last frame: how many of the pipeline's steps were drawn.
+    /// How many of the pipeline's steps the last frame drew.
     int steps_drawn() const { return steps_drawn_; }
     /// From the next frame on, which builds another graph if that changes.
     void set_telemetry(bool telemetry) {
@@ -81,19 +81,19 @@ public:
 
     /// Results of these roles are not read back: result_texture() has them, FrameResult::images has not.
     void keep_on_gpu(std::vector<std::string> roles) { kept_on_gpu_ = std::move(roles); }
-    /// What the last frame made of a role that was requested; nullptr where no step makes it. Until the next.
+    /// The last frame's image of a requested role; nullptr if no step makes it. Valid until the next frame.
     const gpu::Texture* result_texture(const std::string& role) const;
     /// Call after a change of the pipeline that the renderer refers to, unless only values changed that
     /// decide over no input, mix or mask. History lives on where it fits.
     void pipeline_changed() { is_stale_ = true; }
 
-    /// What the next frame would read of this one (framework/render/history_file.h). Throws
+    /// The history that the next frame would read (framework/render/history_file.h). Throws
     /// Error(ErrorKind::output).
     void save_history(const std::filesystem::path& path, const std::string& fingerprint = "");
     /// Takes up where a run over the frames before this one ended. Throws Error(ErrorKind::usage) where the
     /// file is damaged or of another look, effect version, size or last frame: at once, or by render().
     void load_history(const std::filesystem::path& path);
-    /// Of a history that was loaded for a frame that could not be read.
+    /// Drops a history that was loaded for a frame that could not be read.
     void drop_loaded_history();
 
     /// The graph of the last frame in Graphviz's language; "" before the first.
@@ -102,7 +102,7 @@ public:
     std::vector<DrawnPass> draws() const;
     /// How often the graph was built.
     int graphs_built() const { return graphs_built_; }
-    /// Of the last frame: bytes of all textures and buffers, and what they would be without aliasing.
+    /// Bytes of all textures and buffers of the last frame, and their bytes without shared memory.
     std::pair<std::uint64_t, std::uint64_t> graph_bytes() const;
 
 private:

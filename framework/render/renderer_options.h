@@ -1,4 +1,4 @@
-// How a renderer draws, whatever it draws.
+// Options of a renderer that are independent of the look.
 #pragma once
 
 namespace aftershade {

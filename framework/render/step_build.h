@@ -1,4 +1,4 @@
-// What one step has while GraphBuilder adds its passes.
+// The state of one step while GraphBuilder adds its passes.
 #pragma once
 
 #include <map>
@@ -31,7 +31,7 @@ struct StepBuild {
 
     const EffectManifest& manifest() const { return *step.manifest; }
     std::string prefix() const { return step.name + "."; }
-    /// What `reads: ["color"]` means: the input of that name, else the texture.
+    /// The image of `reads: ["color"]`: the input of that name, else the texture.
     graph::TextureHandle read_handle(const std::string& name) const {
         const auto input = inputs.find(name);
         return input != inputs.end() ? input->second : textures.at(name);

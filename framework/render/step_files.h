@@ -1,4 +1,4 @@
-// What parameters and masks bring from files.
+// Images and tables that parameters and masks read from files.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace aftershade {
 /// Files that a pipeline's steps name, each read once. [one thread at a time]
 class StepFiles {
 public:
-    /// What the file parameters of a step hold. Throws Error(ErrorKind::usage) with every fault of the files.
+    /// The content of a step's file parameters. Throws Error(ErrorKind::usage) with every fault of the files.
     const std::map<std::string, ParamFile>& of_step(int index, const PipelineStep& step,
                                                     const ParamReader& params);
     /// The mask of a step: one channel, r32f. Throws Error(ErrorKind::usage).

@@ -12,7 +12,7 @@
 
 namespace aftershade {
 
-/// Of the finite values of one channel of a texture, where its TelemetrySpec counts them.
+/// Statistic of the finite values of one channel of a texture, where its TelemetrySpec counts them.
 struct Statistic {
     std::int64_t count = 0;       ///< texels; with 0 of them the numbers below are 0
     std::int64_t non_finite = 0;  ///< NaN and infinities, not in `count`

@@ -1,4 +1,4 @@
-// What was done when, as a file that chrome://tracing and ui.perfetto.dev show.
+// The timeline of a run, as a file that chrome://tracing and ui.perfetto.dev show.
 #pragma once
 
 #include <chrono>

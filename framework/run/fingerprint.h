@@ -1,4 +1,4 @@
-// What the pixels of an output frame depend on, as one hash: equal fingerprints, equal pixels.
+// A hash of everything that an output frame's pixels depend on: equal fingerprints mean equal pixels.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ std::string hash_of_parts(const FingerprintParts& parts);
 /// "look and effect bokeh changed": the parts that differ, at most three by name.
 std::string difference_of_parts(const FingerprintParts& before, const FingerprintParts& now);
 
-/// What all frames of a run share. [refers to what the caller keeps]
+/// Inputs of the fingerprint that all frames of a run share. [refers to what the caller keeps]
 struct FingerprintSource {
     const Look& look;
     const Pipeline& pipeline;
@@ -42,8 +42,8 @@ struct FingerprintSource {
 };
 
 /// The program's version, the renderer, the look's documents, the values of its steps, the files that these
-/// name, its effects and plug-ins by content, the options of outputs that change pixels, capture.json but for
-/// what only says which frames there are, profiles, and what the first frame decides. Throws
+/// name, its effects and plug-ins by content, the options of outputs that change pixels, capture.json except
+/// its list of frames, profiles, and the decisions by the first frame. Throws
 /// Error(ErrorKind::usage) for a file that cannot be read.
 FingerprintParts setup_parts(const FingerprintSource& source, const CaptureReader& reader);
 
@@ -52,7 +52,7 @@ struct FrameFingerprint {
     std::string hash;         ///< of the setup, the frame's own inputs and `before`
     FingerprintParts inputs;  ///< by file name; "absent" for a file that would be read if it were there,
                               ///< "unreadable" for one that cannot be read
-    /// Of a look with history: the fingerprint of the frame before, or kBegin.
+    /// For a look with history: the fingerprint of the previous frame, or kBegin.
     std::string before;
     static constexpr const char* kBegin = "begin";
 };

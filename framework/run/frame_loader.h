@@ -42,11 +42,11 @@ public:
     /// Those of the same shot that some input wants and whose files are there.
     Neighbours neighbours(std::size_t index);
     bool begins_shot(std::size_t index) const;
-    /// RunOptions::frames_ahead, or what it stands for once a frame is read; 1 before.
+    /// RunOptions::frames_ahead, or the number it stands for once a frame is read; 1 before.
     int frames_ahead() const { return frames_ahead_; }
-    /// What the frames read so far have of the objects that the look names.
+    /// Objects of the look in the frames that were read so far.
     ObjectMatches& objects() { return objects_; }
-    /// What reading and decoding took so far, on all threads together.
+    /// Time of reading and decoding so far, over all threads.
     double busy_ms() const { return busy_ms_; }
 
 private:

@@ -46,8 +46,8 @@ private:
     const RunOptions& run_;
 };
 
-/// What a run writes of a frame whose display window at full scale is `display`: all of it or the region, at
-/// the run's scale.
+/// The window that a run writes of a frame whose display window at full scale is `display`: all of it or the
+/// region, at the run's scale.
 Window written_window(const Window& display, const RunOptions& run);
 
 /// Adds a frame with NaN or infinite pixels to the report, once.

@@ -1,5 +1,5 @@
-// What runs have written into a folder: one line of JSON for each finished frame, so that a later run can
-// leave out what is current.
+// The journal of a folder: one line of JSON for each finished frame, so that a later run can leave out
+// current frames.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,8 @@ public:
     /// The parts of a setup; nullptr where no line has them.
     const FingerprintParts* setup(const std::string& hash) const;
 
-    /// What frames to come share: it is appended with the first of them, unless the journal has it. Makes the
-    /// folder. Throws Error(ErrorKind::output).
+    /// The line that later frames share: it is appended with the first of them, unless the journal has it.
+    /// Makes the folder. Throws Error(ErrorKind::output).
     void begin(const FingerprintParts& setup);
     /// Appends one frame whose files are in place; reads them for their hashes. Throws
     /// Error(ErrorKind::output). [one call at a time]

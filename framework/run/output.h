@@ -1,4 +1,4 @@
-// What `run` writes: EXR of color and other roles, PNG of display, taps as EXR or as PNG in false colour.
+// Outputs of `run`: EXR of color and other roles, PNG of display, taps as EXR or as PNG in false colour.
 #pragma once
 
 #include <filesystem>

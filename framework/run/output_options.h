@@ -1,4 +1,4 @@
-// What files `run` writes of each frame, and how.
+// Options of the files that `run` writes for each frame.
 #pragma once
 
 #include <map>

@@ -16,8 +16,8 @@
 
 namespace aftershade {
 
-/// What a run that can resume later does beside each frame. Any may be empty. On the caller's thread unless
-/// said otherwise; what they throw ends the run.
+/// Callbacks of a run that can resume later, for each frame. Any may be empty. They run on the caller's
+/// thread unless noted; an exception ends the run.
 struct RunHooks {
     std::function<void(int frame, PipelineRenderer& renderer)> before_frame;
     /// Whether the frame is written; one that is not is rendered for what it leaves to later frames.
@@ -30,11 +30,11 @@ struct RunHooks {
     /// time]
     std::function<void(int frame, const std::vector<std::filesystem::path>& files, double seconds)>
         frame_written;
-    /// What the history of RunOptions::history_out is labelled with.
+    /// The label of the history of RunOptions::history_out.
     std::function<std::string()> last_fingerprint;
 };
 
-/// What a run works with. [refers to what the caller keeps]
+/// The inputs of a run. [refers to what the caller keeps]
 struct RunSetup {
     /// The same each time. First called when a frame is being read already, so it may make the context then.
     std::function<gpu::Context&()> context;

@@ -12,14 +12,14 @@
 
 namespace aftershade {
 
-/// What to do where a frame's file is not there.
+/// Handling of a missing frame's file.
 enum class MissingFrame {
     error,  ///< the frame has failed
     skip,   ///< leave it out
     hold    ///< run the last frame that was there again, under this frame's number
 };
 
-/// What to do where a capture or an output has pixels that are NaN or infinite. They are always counted.
+/// Handling of a capture or an output with pixels that are NaN or infinite. They are always counted.
 enum class NanPolicy {
     warn,  ///< say so
     fail,  ///< the frame has failed, and nothing of it is written

@@ -1,4 +1,4 @@
-// What a run reports: while it works, and at its end.
+// Reports of a run, while it works and at its end.
 #pragma once
 
 #include <cstdint>
@@ -87,7 +87,7 @@ struct RunObserver {
     std::function<void(int frame, const std::string& line)> native_message;
     /// An object that the look names was first missed, or found.
     std::function<void(const ObjectSighting&)> object_seen;
-    /// Of every frame but those that only warm history up; of written ones when their files are in place.
+    /// Called for every frame except warm-up frames; for written frames, once their files are in place.
     std::function<void(const FrameOutcome&)> frame_finished;
 };
 

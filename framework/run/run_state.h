@@ -17,7 +17,7 @@ struct RunState {
     static constexpr const char* kJournal = ".aftershade/journal.jsonl";      ///< likewise
 };
 
-/// Of an output's pattern. Patterns that differ in the number's width alone are one.
+/// State of an output's pattern. Patterns that differ only in the number's width are the same.
 RunState run_state(const std::string& pattern);
 
 /// Makes the state folder. Throws Error(ErrorKind::output) with the remedy.

@@ -10,7 +10,7 @@
 
 namespace aftershade {
 
-/// What the effects of a look declare ("warmup" in their manifests).
+/// The warm-up that the effects of a look declare ("warmup" in their manifests).
 struct LookWarmup {
     int frames = 0;                       ///< the sum over its effects: each warms up on the one before it
     double error = 0;                     ///< the sum, as WarmupSpec has it

@@ -29,8 +29,8 @@ const ScatteringValue* scattering_of(const ParamValue& value);
 std::vector<ScatteringProfile> scattering_profiles_of(const ScatteringValue& value);
 /// Whether each of them is Burley's: shaders then compute it without tables.
 bool is_burley(const ScatteringValue& value);
-/// What shaders look up by object: rows of the type's columns (index among scattering_profiles_of(); d and
-/// falloff, mm, own or fitted; direct; reach, mm).
+/// The table that shaders look up by object: rows of the type's columns (index among
+/// scattering_profiles_of(); d and falloff, mm, own or fitted; direct; reach, mm).
 TableValue scattering_table(const ScatteringValue& value);
 
 /// Shaders have, of a parameter "scattering_profile", a sampler2D scattering_profile_curves and:

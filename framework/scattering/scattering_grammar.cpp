@@ -45,7 +45,7 @@ Block burley() {
                      optional("albedo", rgb(0, 1), "Albedo of the surface."),
                      optional("mean_free_path_mm", length_mm(), "Path in mm, from which 'mapping' makes d."),
                      optional("mapping", choice({"searchlight", "diffuse", "dmfp"}),
-                              "What the path is: mean free path of light that enters at right angles, of "
+                              "Meaning of the path: mean free path of light that enters at right angles, of "
                               "light from all around, or the diffuse mean free path in the volume.",
                               R"("dmfp")")},
             .rules = {grammar::exactly_one_of({"d_mm", "mean_free_path_mm"}),

@@ -60,7 +60,7 @@ struct ScatteringProfile {
     double mean_square_mm2(int channel) const;
     /// d of the Burley profile with that mean square distance, 14 d^2; its own d for burley.
     Rgb fitted_d_mm() const;
-    /// What an artist's radii would be divided by for that mean square distance; artist: its own.
+    /// The divisor of an artist's radii for that mean square distance; artist: its own.
     Rgb fitted_falloff_mm() const;
     /// Beyond it lies less than kBeyondReach of the light of any channel.
     double reach_mm() const;
@@ -73,7 +73,7 @@ struct ScatteringProfile {
     static constexpr int kFittedGaussians = 6;
     static constexpr std::size_t kMaxGaussians = 8;
 
-    // What documents may write: d, mean free paths and widths; both coefficients of a dipole, 1/mm, below
+    // Limits of documents: d, mean free paths and widths; both coefficients of a dipole, 1/mm, below
     // which light would never stop; and an artist's strength.
     static constexpr double kLeastLength_mm = 1e-6, kMostLength_mm = 1e6;
     static constexpr double kLeastAbsorption = 1e-5, kMostAbsorption = 1e3, kMostScattering = 1e4;

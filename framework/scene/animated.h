@@ -10,7 +10,7 @@ namespace aftershade::scene {
 /// Between keys: a line; the earlier key until the next; or a cubic that rests at each key (smoothstep).
 enum class Interpolation { linear, step, smooth };
 
-/// The frames between two cuts. What moves keeps its motion over a shot's ends: the exposure and the motion
+/// The frames between two cuts. An object keeps its motion over a shot's ends: the exposure and the motion
 /// vectors of a shot's first frame see nothing of the shot before it.
 struct Shot {
     double first = -1e9;

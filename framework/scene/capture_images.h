@@ -15,7 +15,7 @@ std::span<const std::string> all_roles();
 /// Zero-filled images of the roles, header with windows, frame and profile `native`.
 Capture make_capture(int frame, int width_px, int height_px, std::span<const std::string> roles);
 
-// Everything but depth and motion; from several threads for different pixels.
+// Every role except depth and motion; from several threads for different pixels.
 void write_surface(Capture& capture, int x, int y, const Scene& scene, const Surface& surface,
                    const Shading& shading);
 /// Over what write_surface() wrote as the surface's color.

@@ -13,8 +13,8 @@ inline constexpr std::uintmax_t kMaxGltfBytes = 1024u * 1024 * 1024;
 /// Whether they are a .glb, by what they begin with.
 bool is_binary_gltf(std::span<const unsigned char> bytes);
 
-/// What tinygltf 2.7 would not survive, whatever the file's kind: a binary chunk that ends outside the
-/// file, JSON that nests so deep that reading it by recursion overflows the stack. "" when nothing.
+/// Faults that crash tinygltf 2.7, in any kind of file: a binary chunk that ends outside the file, JSON that
+/// nests so deep that reading it by recursion overflows the stack. "" without a fault.
 std::string check_gltf_bytes(std::span<const unsigned char> bytes);
 
 }  // namespace aftershade::scene

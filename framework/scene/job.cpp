@@ -353,18 +353,19 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
     };
     if (job.folder.empty()) fault(Option::output, "names no folder");
     if (!numbers_fit(job))
-        fault(Option::subframes, fmt::format("file numbers, {} times the frame's, go beyond the {} that a "
-                                             "capture's range can have; choose lower frames",
-                                             job.subframes, kMaxFileNumber));
+        fault(Option::subframes,
+              fmt::format("file numbers are {} times the frame's number and exceed {}, the largest "
+                          "that a capture can have; choose lower frames",
+                          job.subframes, kMaxFileNumber));
     if (const std::uint64_t bytes = bytes_of_job(job); bytes > kMaxJobBytes)
         fault(job.texture_object >= 0 ? Option::texture_size : Option::size,
-              fmt::format("rendering takes about {:.1f} GiB of memory, the limit is {:.0f} GiB; render fewer "
-                          "pixels at once{}",
+              fmt::format("rendering needs about {:.1f} GiB of memory; the limit is {:.0f} GiB (render fewer "
+                          "pixels at once{})",
                           double(bytes) / kGiB, double(kMaxJobBytes) / kGiB,
                           has_lists(job) ? ", or choose fewer " + spelled(Option::list_nodes) : ""));
     if (!job.captures && job.truths.empty() && !job.visibility)
-        fault(Option::truth_only, "there is no " + spelled(Option::truth) + " and no " +
-                                      spelled(Option::visibility) + " to render");
+        fault(Option::truth_only, "leaves nothing to render; add " + spelled(Option::truth) + " or " +
+                                      spelled(Option::visibility));
     const bool scattering =
         std::any_of(job.truths.begin(), job.truths.end(), [](const Truth& t) { return t.scattering; });
     const bool scatters =

@@ -175,7 +175,10 @@ public:
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return read<std::uint8_t>(i, 0);
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return read<std::uint16_t>(i, 0);
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return read<std::uint32_t>(i, 0);
-            default: fault(fmt::format("component type {} is none of indices", component_));
+            default:
+                fault(
+                    fmt::format("component type {} is not allowed for indices (use an unsigned integer type)",
+                                component_));
         }
     }
 
@@ -187,7 +190,8 @@ public:
             case TINYGLTF_COMPONENT_TYPE_SHORT: return scaled<std::int16_t>(i, component);
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return scaled<std::uint16_t>(i, component);
             case TINYGLTF_COMPONENT_TYPE_FLOAT: break;
-            default: fault(fmt::format("component type {} is none of vertices", component_));
+            default:
+                fault(fmt::format("component type {} is not allowed for vertices (use floats)", component_));
         }
         const double value = read<float>(i, component);
         if (!std::isfinite(value)) fault(fmt::format("value {} is not finite", i));

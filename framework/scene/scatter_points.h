@@ -7,7 +7,8 @@
 
 namespace aftershade::scene {
 
-/// Of Burley's profile with `d_m`, over the albedo: 1 / m^2 (Christensen and Burley 2015, equation 3).
+/// Density of Burley's profile with `d_m`, over the albedo: 1 / m^2 (Christensen and Burley 2015, equation
+/// 3).
 double burley_density(double radius_m, double d_m);
 
 /// The r / d within which `u` (0 to 1) of the light comes back: the exact inverse of

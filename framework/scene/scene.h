@@ -65,8 +65,7 @@ struct Object {
     Place place;
 };
 
-/// What a directional light shines through, by the distance along `axis`: for light whose blur has a closed
-/// form.
+/// Pattern of a directional light, by the distance along `axis`: for light whose blur has a closed form.
 struct LightPattern {
     enum class Kind { none, edge, cosine } kind = Kind::none;
     glm::dvec3 axis{1, 0, 0};  ///< world, unit length

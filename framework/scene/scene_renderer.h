@@ -1,6 +1,6 @@
 // Makes captures of a scene, and the pictures that effects approximate: by rays, in double precision, on the
-// CPU. Nothing of it depends on the GL that effects run on, and the same scene gives the same bits whatever
-// the threads.
+// CPU. It does not depend on the GL that effects run on, and the same scene gives the same bits for any
+// number of threads.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace aftershade::scene {
 
-/// What a true picture has that a capture's one ray a pixel has not.
+/// Effects of a true picture that a capture's one ray a pixel lacks.
 struct TruthKinds {
     bool lens = false;
     bool shutter = false;
@@ -54,20 +54,20 @@ public:
     /// `scene` must outlive this. Pixels are square, and the sensor is as wide as the picture.
     SceneRenderer(const Scene& scene, int width_px, int height_px, int threads);
 
-    /// Every role but mask, at `time` in frames; motion is to `time` minus and plus one frame, in the shot of
-    /// `frame`. Where the first surface is transparent, color has what shines through as well; the other
-    /// roles are of that surface. `jitter_px` is the samples' offset from the pixels' centres, +y down.
+    /// Every role except mask, at `time` in frames; motion is to `time` minus and plus one frame, in the shot
+    /// of `frame`. Where the first surface is transparent, color includes the light that shines through; the
+    /// other roles are of that surface. `jitter_px` is the samples' offset from the pixels' centres, +y down.
     Capture render_capture(int frame, double time, std::array<double, 2> jitter_px = {0, 0}) const;
     Capture render_capture(int frame) const { return render_capture(frame, frame); }
 
-    /// The same, and what lies behind: layer n has the n-th surface that each ray meets
+    /// The same, with the hidden surfaces: layer n has the n-th surface that each ray meets
     /// (World::trace_through), color times its opacity and alpha its opacity, the background behind the last
-    /// one, and nothing, alpha 0 and depth +inf, behind that. What shines through the last layer is in it,
-    /// with alpha 1. The first of one layer is render_capture()'s.
+    /// one, and nothing, alpha 0 and depth +inf, behind that. The last layer includes the light that shines
+    /// through it, with alpha 1. The first of one layer is render_capture()'s.
     std::vector<Capture> render_layers(int frame, double time, std::array<double, 2> jitter_px,
                                        int layers) const;
-    /// Deep samples: all that kDeepRays rays over each pixel's square meet. What they meet of one object at
-    /// nearly one depth is a sample, whose alpha is the share of the rays times the opacity. Channels: R G B
+    /// Deep samples: all surfaces that kDeepRays rays over each pixel's square hit. Hits on one object at
+    /// nearly one depth are a sample, whose alpha is the share of the rays times the opacity. Channels: R G B
     /// A Z ZBack, velocity.XY, velocity_next.XY, normal.XYZ, object_id.I. The background is an opaque sample
     /// at +inf.
     DeepImage render_deep(int frame, double time, std::array<double, 2> jitter_px) const;
@@ -79,7 +79,7 @@ public:
     /// in their order.
     void for_each_sample(int frame, const TruthSettings& settings, const SampleVisitor& visit) const;
 
-    /// RGBA. Of the shutter, sample i of n is the middle of part i of the exposure, or for interleaved
+    /// RGBA. For the shutter, sample i of n is the middle of part i of the exposure, or for interleaved
     /// samples one of 16 moments in that part; lens and pixel are multi-jittered. Without `antialias` rays go
     /// through the pixels' centres, moved by `jitter_px`.
     Image render_truth(int frame, const TruthSettings& settings) const;

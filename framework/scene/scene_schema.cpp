@@ -12,12 +12,12 @@ constexpr const char* kHead =
     R"(<!-- Made by `aftershade docs` from framework/scene/fields.cpp; do not edit. -->
 # Scene documents
 
-What a `scene.json` for `aftershade render` may say. It is JSON with `//` comments; a key that is not listed is
-an error. `aftershade schema scene` prints the same as a JSON Schema.
+This page has every key of a `scene.json` for `aftershade render`. The document is JSON with `//` comments; a
+key that is not listed is an error. `aftershade schema scene` prints the same as a JSON Schema.
 
-A value with a unit is a number in that unit, or a string in any unit that converts to it: `50` or `"5 cm"` for
-mm; so is each number of a vector. The range holds for each of them. Where *animated* says yes, the value may be
-`{ "keys": { "1": ..., "12.5": ... }, "interpolation": ... }`: values by frame, between which it is)";
+A value with a unit is a number in that unit, or a string in any unit that converts to it: `50` or `"5 cm"`
+for mm. Each number of a vector may have a unit, and the range applies to each. If *animated* is yes, the value
+may be `{ "keys": { "1": ..., "12.5": ... }, "interpolation": ... }`: values by frame, between which it is)";
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// What a scene document may say, made from the declarations of its fields: for editors and for readers.
+// The schema and the page of scene documents, made from the declarations of their fields.
 #pragma once
 
 #include <string>

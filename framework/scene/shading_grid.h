@@ -27,7 +27,7 @@ struct ShadingGridSettings {
     bool anisotropic = false;  ///< cells as long and as wide as the blur allows (Vaidyanathan et al. 2012)
 };
 
-/// What a shading sample stands for.
+/// The cell of a shading sample.
 struct ShadingPlace {
     int object = 0;
     std::uint32_t triangle = 0;
@@ -46,7 +46,7 @@ public:
     ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings);
 
     std::uint32_t id_count() const { return id_count_; }
-    /// The id of a point that a ray met, at whatever time.
+    /// The id of a point that a ray hit, at any time.
     std::uint32_t id_of(const Surface& surface) const;
     /// The cell's centre, drawn into the triangle.
     ShadingPlace place_of(std::uint32_t id) const;
@@ -56,14 +56,14 @@ public:
     glm::dvec3 shade(std::uint32_t id) const;
     static constexpr int kAlbedoPoints = 4;
 
-    /// Of one triangle.
+    /// The grid of one triangle.
     struct Grid {
         glm::dmat2 cells_from_px{1};
         glm::dvec2 low{0};  ///< of the grid, in cells
         glm::ivec2 size{1};
         std::uint32_t start = 0;  ///< the first id over 2
     };
-    /// Of each triangle of each object, in their order.
+    /// The grid of each triangle of each object, in their order.
     const std::vector<Grid>& grids() const { return grids_; }
     const SceneState& reference() const { return world_.state(); }
 

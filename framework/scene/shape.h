@@ -69,7 +69,7 @@ inline bool meets(const Ray& ray, const glm::dvec3& inverse_direction, const Bou
 bool intersect(const Shape& shape, const MeshTree* mesh, const Ray& ray, double low, double high, bool any,
                ShapeHit& hit);
 
-/// Of a mesh, by the triangle and its weights alone.
+/// The point of a mesh, by the triangle and its weights alone.
 ShapePoint mesh_point(const Mesh& mesh, const ShapeHit& hit);
 ShapePoint point_of(const Shape& shape, const MeshTree* mesh, const Ray& ray, const ShapeHit& hit);
 

@@ -73,7 +73,7 @@ public:
 
     std::uint64_t node_count() const;
     std::uint64_t overflows() const;
-    /// Of the nodes, and of a head for each pixel.
+    /// Memory of the nodes, and of a head for each pixel.
     std::uint64_t bytes() const;
 
 private:

@@ -76,7 +76,7 @@ struct VisibilityPicture {
 /// antialias.
 TruthSettings truth_of(const VisibilitySettings& settings);
 
-/// What each sample met, as SampleIds has it; one surface, transparent ones by chance.
+/// The surface that each sample hit, as in SampleIds: one surface, transparent ones at random.
 std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
                                      const VisibilitySettings& settings);
 /// That, or what does the same elsewhere.
@@ -98,8 +98,8 @@ struct VisibilityPasses {
     LightResolver resolve = resolve_light;
 };
 
-/// `renderer` is of a scene of meshes (triangulated()). What all caches give is one picture: they change the
-/// count alone. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
+/// `renderer` is of a scene of meshes (triangulated()). All caches give the same picture; they change only
+/// the count. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
 /// Transparency::sorted is for the others.
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const VisibilityPasses& passes = {});

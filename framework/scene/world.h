@@ -13,7 +13,7 @@
 
 namespace aftershade::scene {
 
-/// What does not move: the meshes' hierarchies. [immutable: any thread]
+/// The unmoving part: the meshes' hierarchies. [immutable: any thread]
 class Geometry {
 public:
     /// `scene` must outlive this.
@@ -73,8 +73,8 @@ public:
     /// The light that comes along a ray: that of each surface by its opacity, through those before it. Adds
     /// to `shadings` how many surfaces that took.
     glm::dvec3 radiance(const Ray& ray, int* shadings = nullptr) const;
-    /// What a ray meets, the nearest first and at most `most`; without the insides of the opaque things that
-    /// it has entered, so that behind a ball's front comes what stands behind the ball.
+    /// The surfaces that a ray hits, the nearest first and at most `most`; without the insides of the opaque
+    /// things that it has entered, so that behind a ball's front comes what stands behind the ball.
     std::vector<Surface> trace_through(const Ray& ray, std::size_t most) const;
     /// Whether anything stands between two points.
     bool is_hidden(const glm::dvec3& from, const glm::dvec3& to) const;
@@ -97,7 +97,7 @@ public:
     Shading shade(const Surface& surface, const glm::dvec3& eye) const;
 
 private:
-    /// What a ray needs of an object, close together.
+    /// The data of an object that a ray needs, close together.
     struct Seen {
         int object = 0;
         bool casts_shadow = true;

@@ -38,7 +38,7 @@ public:
         std::chrono::milliseconds hold{200};
         std::chrono::milliseconds linger{1'000};  ///< for what the peer still sends after its answer
         int workers = 8;
-        /// Of requests that are not whole, and of answers that are not taken; beyond, the oldest are closed.
+        /// Bytes of incomplete requests and of unread answers; above that, the oldest are closed.
         std::size_t held_bytes = std::size_t(24) << 20;
         std::size_t waiting_bytes = std::size_t(8) << 20;  ///< of whole requests; beyond, they are refused
     };

@@ -1,4 +1,4 @@
-// What the process that speaks HTTP and the one that draws say to each other, over a socket of theirs.
+// Messages between the process that speaks HTTP and the process that draws, over their socket.
 #pragma once
 
 #include <cstdint>

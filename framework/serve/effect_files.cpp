@@ -60,7 +60,7 @@ EffectFiles effect_files(const EffectRegistry& effects, const std::string& id, b
                         "and serve with " +
                         spelled(Option::effect_path);
     else if (fs::is_symlink(*folder, failure))
-        files.why_not = folder->string() + " is a link, and what it leads to is not written";
+        files.why_not = folder->string() + " is a link, and the folder behind a link is not written";
     return files;
 }
 

@@ -41,7 +41,8 @@ Response error_response(int status, const std::string& message);
 /// Code 500: the message of an Error; of any other exception that it is a fault of the program.
 Response fault_response(const std::exception& error);
 
-/// With the headers that every answer has: no sniffing, no store, no framing, no scripts but the page's own.
+/// With the headers that every answer has: no sniffing, no store, no framing, and no scripts except the
+/// page's own.
 std::string response_bytes(const Response& response, bool is_kept = false);
 
 /// nullopt where it is not HTTP/1.1, or where a header stands twice. `head` ends with its empty line; what is
@@ -54,7 +55,7 @@ public:
     /// What no more needs to be read of, once there is such a thing.
     std::optional<Response> add(std::string_view bytes);
     bool has_begun() const { return !bytes_.empty(); }
-    /// With everything but the body, once the head is there; else nullptr.
+    /// The message without its body, once the head is complete; else nullptr.
     const Request* head() const { return request_ ? &*request_ : nullptr; }
     bool is_whole() const { return request_ && bytes_.size() >= whole_; }
     /// Whether another request may follow on the connection, as browsers ask; not one that came too early.

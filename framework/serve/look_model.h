@@ -40,7 +40,7 @@ public:
               std::vector<std::filesystem::path> folders = {});
 
     const std::filesystem::path& path() const { return path_; }
-    /// Of the last text that had no faults; nullptr before there was one.
+    /// The last text without faults, bound; nullptr before there was one.
     std::shared_ptr<const BoundText> bound() const;
 
     // Each throws Refusal.

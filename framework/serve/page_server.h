@@ -1,4 +1,4 @@
-// What each address of the page's server gives.
+// The answer of the page's server at each address.
 #pragma once
 
 #include <filesystem>

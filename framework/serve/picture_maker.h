@@ -49,7 +49,7 @@ public:
     MadePicture make(const PictureRequest& request);
     /// Every role's value at a pixel of the whole picture, and the result's.
     nlohmann::ordered_json probe(const PictureRequest& request, int x, int y);
-    /// Of the final picture: how many pixels have each of 256 values.
+    /// How many pixels of the final picture have each of 256 values.
     nlohmann::ordered_json histogram(const PictureRequest& request);
     /// How far the colour that the steps make is from a truth beside the frame.
     nlohmann::ordered_json metrics(const PictureRequest& request, const std::string& truth);

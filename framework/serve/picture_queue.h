@@ -1,4 +1,4 @@
-// What is to be drawn, one after the other: the newest request for a picture before older ones.
+// Requests to draw, one after the other: the newest request for a picture comes first.
 #pragma once
 
 #include <atomic>

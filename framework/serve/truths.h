@@ -1,4 +1,5 @@
-// What `aftershade render --truth` wrote beside a frame: the same picture through a lens or a shutter.
+// Truths that `aftershade render --truth` wrote next to a frame: the same picture through a lens or a
+// shutter.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
-// What a page shows of a frame: the result, what was before it, a tap or a role in false colour; and its
-// numbers.
+// The views of a frame on the page: the result, the picture before the steps, a tap or a role in false
+// colour; and their numbers.
 #pragma once
 
 #include <string>

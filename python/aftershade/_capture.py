@@ -166,7 +166,7 @@ class Capture:
 
     @property
     def notes(self) -> list[str]:
-        """What reading chose, what may be wrong, and what differs from the sequence's first frame."""
+        """Choices of the reader, possible faults, and differences from the sequence's first frame."""
         return self._native.notes
 
     def __repr__(self) -> str:

@@ -49,7 +49,7 @@ class Port:
 
 @dataclass(frozen=True)
 class Effect:
-    """What `aftershade describe` prints of an effect."""
+    """An effect, as `aftershade describe` prints it."""
 
     id: str
     version: str
@@ -81,7 +81,7 @@ def shipped_data() -> Path:
 
 
 class Host:
-    """A GL context and what is read for it. The functions of this package share one unless they are given another.
+    """A GL context with its effects and profiles. The functions of this package share one unless they are given another.
 
     Any thread may call a host: calls on one host wait for each other, and release the GIL meanwhile. For frames that
     render at the same time make a host for each thread.

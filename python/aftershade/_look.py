@@ -34,7 +34,7 @@ def _render_options(
 
 
 class Result:
-    """What a look made of one frame: images by role. In a notebook it shows itself as a picture."""
+    """The result of a look for one frame: images by role. A notebook displays it as a picture."""
 
     def __init__(self, native: _native.Result) -> None:
         self._native = native
@@ -84,7 +84,7 @@ class Result:
 
     @property
     def messages(self) -> list[str]:
-        """What plug-ins logged."""
+        """Messages of plug-ins."""
         return self._native.messages
 
     @property
@@ -94,7 +94,7 @@ class Result:
 
     @property
     def history_reset(self) -> str:
-        """Why history began with this frame; "" where it continued, or where there is none."""
+        """Why history began with this frame; "" if it continued, or if the look has none."""
         return self._native.history_reset
 
     @property
@@ -141,7 +141,7 @@ class Params(Mapping[str, Param]):
 
 
 class Session:
-    """Frames in their order, with what effects keep from one to the next (history)."""
+    """Renders frames in order, with the history that effects keep from one frame to the next."""
 
     def __init__(self, look: Look) -> None:
         self._look = look
@@ -172,7 +172,7 @@ class Session:
 
 
 class Look:
-    """A chain of effects, from a file or from a dict of what the file would hold.
+    """A chain of effects, from a file or from a dict with the content of such a file.
 
     :param source: path of a look, or its content
     :param host: the default host unless another is given
@@ -240,7 +240,7 @@ class Look:
         self._native.set(dict(values))
 
     def reset(self, name: str) -> None:
-        """Sets a parameter to what the look, its preset or the manifest gives it."""
+        """Sets a parameter to the value of the look, its preset or the manifest."""
         self._native.reset(name)
 
     def render(self, frame: Frame, **options: Any) -> Result:

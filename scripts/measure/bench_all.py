@@ -83,7 +83,7 @@ def film() -> Figures:
     runs = [passes_ms(ROOT / "scenes/looks/film.json", source) for _ in range(4)][1:]
     tail = min(sum(ms for step, ms in run.items() if step in TAIL) for run in runs)
     return {"film look at 1080p, all passes, ms": round(min(sum(run.values()) for run in runs)),
-            "its tail, chromatic aberration to view transform, ms": round(tail)}
+            "tail of the film look at 1080p, chromatic aberration to view transform, ms": round(tail)}
 
 
 def number(pattern: str, text: str) -> float:
@@ -117,14 +117,24 @@ def commit() -> str:
     return subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, cwd=ROOT, check=True).stdout.strip()
 
 
+def measured(name: str) -> tuple[str, str]:
+    """What a figure measures, and its unit: a time, or a ratio to what."""
+    if match := re.fullmatch(r"(.*?):? times as fast as (.*)", name):
+        return match[1], f"times as fast as {match[2]}"
+    if match := re.fullmatch(r"(.*), ms", name):
+        return match[1], "ms"
+    what, of = name.rsplit(", of ", 1)
+    return what, f"ratio to {of}"
+
+
 def write_page(page: Page, history: list[Document]) -> None:
     """Of each figure the newest."""
     newest = {}
     for run in history:
         for name, value in run["figures"].items():
             newest[name] = (value, run["commit"], run["day"])
-    rows = [[name, value, f"{commit}, {day}"] for name, (value, commit, day) in newest.items()]
-    page.fill({"figures": table(["", "figure", "measured at"], rows), "machine": history[-1]["machine"]})
+    rows = [[*measured(name), value, f"{commit}, {day}"] for name, (value, commit, day) in newest.items()]
+    page.fill({"figures": table(["what", "unit", "figure", "measured at"], rows), "machine": history[-1]["machine"]})
 
 
 def machine() -> str:

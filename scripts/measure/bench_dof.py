@@ -108,7 +108,7 @@ def hexagon_against_gather(family: list[Effect]) -> str:
     for (params, reached), (ms, fetches) in zip(found, gathers):
         lines.append("bokeh_gather with " + ", ".join(f"{k} {v}" for k, v in params.items()) +
                      f" (IoU {reached:.3f}) {ms:.0f} ms, {fetches:.1f} fetches: {ms / hexagon[0]:.2f} times the time")
-    return "; ".join(lines)
+    return "\n".join(f"- {line}" for line in lines)
 
 
 def main() -> None:

@@ -112,7 +112,7 @@ def main() -> None:
                 lambda: bench.time_ms("write", mine, capture, "zip"),
                 lambda: timed_ms(lambda: rival_write(theirs, pixels)),
             )
-            FIGURES[f"EXR, {size}: size of what was written, of OpenImageIO's"] = round(mine.stat().st_size / theirs.stat().st_size, 3)
+            FIGURES[f"EXR, {size}: size of the written file, of OpenImageIO's"] = round(mine.stat().st_size / theirs.stat().st_size, 3)
             print(f"{'':<34} size {mine.stat().st_size / theirs.stat().st_size:.3f} of OpenImageIO's")
     captures = os.environ.get("AFTERSHADE_CAPTURES")
     if captures:

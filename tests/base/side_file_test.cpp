@@ -79,8 +79,8 @@ TEST(FilesBelow, AreNamedWithTheLinkAndTheRemedy) {
     fs::create_symlink("../secret", folder / "out/link");
     fs::create_directory_symlink("..", folder / "out/up");
     const std::string remedy =
-        "a symbolic link, which is not followed here (remove it, or put in its place "
-        "what it leads to)";
+        "a symbolic link, which is not followed here (remove it, or put the file itself "
+        "in its place)";
     EXPECT_EQ(error_of([&] { path_below(folder / "out", "link"); }),
               (folder / "out/link").string() + ": is " + remedy);
     EXPECT_EQ(error_of([&] { path_below(folder / "out", "up/file"); }),

@@ -298,8 +298,8 @@ TEST_F(Authoring, DocsAreWrittenOnceAndTheirDriftIsFound) {
     replace("pages/README.md", "# Effects", "# effects");
     replace("scene-reference.md", "# Scene", "# scene");
     const std::string drift = command({"docs", "-o", "pages", "--check"}, 1).out;
-    EXPECT_NE(drift.find("pages/README.md: is not what is declared"), std::string::npos);
-    EXPECT_NE(drift.find("scene-reference.md: is not what is declared"), std::string::npos);
+    EXPECT_NE(drift.find("pages/README.md: differs from the declarations"), std::string::npos);
+    EXPECT_NE(drift.find("scene-reference.md: differs from the declarations"), std::string::npos);
     EXPECT_NE(drift.find("pages/gone.md: no effect has this page"), std::string::npos);
 }
 
@@ -315,8 +315,9 @@ TEST_F(Authoring, DocsWritesTablesIntoMarkedRegionsOfPagesAndFindsTheirDrift) {
     EXPECT_NE(page.find("<!-- end -->\nMy own words.\n"), std::string::npos) << page;
     command({"docs", "-o", "pages", "--check"});
     replace("mine.md", "1e-06", "0.1");
-    EXPECT_NE(command({"docs", "-o", "pages", "--check"}, 1).out.find("mine.md: is not what is declared"),
-              std::string::npos);
+    EXPECT_NE(
+        command({"docs", "-o", "pages", "--check"}, 1).out.find("mine.md: differs from the declarations"),
+        std::string::npos);
     write_text(folder_ / "mine.md", begin + "<!-- end -->\n");
     EXPECT_NE(command({"docs", "-o", "pages"}, 2).err.find("no page shows the table 'case.case'"),
               std::string::npos);

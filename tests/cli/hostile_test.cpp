@@ -178,7 +178,7 @@ std::vector<Attack> effects() {
          {"run", "trail.json", "frame.exr", "-o", "out.exr", "--history-in", "history"}},
         {"APictureOf16384Squared",
          ExitCode::usage,
-         "the limit is 16 GiB; render fewer pixels at once",
+         "the limit is 16 GiB (render fewer pixels at once",
          [](const Place& place) {
              place.write("scene.json",
                          R"({ "aftershade": 1, "size": [16384, 16384], "camera": {}, "objects": [

@@ -149,7 +149,7 @@ TEST_F(Render, PacksAsHardAsItsLevelOfZipSays) {
     EXPECT_LT(size_of("zip:9", "--deep"), size_of("zip:1", "--deep"));
     const CommandResult refused = render({scene("toys"), "-o", "out", "--compression", "zip:0"});
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_NE(refused.err.find("zip:0 is none of"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("zip:0 is not one of"), std::string::npos) << refused.err;
 }
 
 TEST_F(Render, EndsWithGlsLockedBucketsOnOneThreadAndOnTwo) {
@@ -303,7 +303,7 @@ TEST_F(Render, TellsWhatIsWrongWithTheCommand) {
         {{head, "-o", "x", "--space", "uv", "--object", "skul"}, "did you mean 'skull'?"},
         {{head, "-o", "x", "--object", "skull"}, "is for --space uv"},
         {{head, "-o", "x", "--profile", "blendr"}, "did you mean 'blender'?"},
-        {{head, "-o", "x", "--truth-only"}, "there is no --truth and no --visibility to render"},
+        {{head, "-o", "x", "--truth-only"}, "leaves nothing to render; add --truth or --visibility"},
         {{scene("wheel"), "-o", "x", "--truth", "scattering"},
          "no material of the scene has a \"scattering_profile\""},
         {{"nowhere", "-o", "x"}, "nowhere"},

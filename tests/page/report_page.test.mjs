@@ -155,7 +155,7 @@ inPage("finds cases by name, tag and verdict", async (page) => {
   await page.getByRole("searchbox").fill("fast");
   assert.deepEqual(await shown(), ["case-passing"]);
   await page.getByRole("searchbox").fill("nothing like it");
-  assert.ok(await page.getByText("No case fits.").isVisible());
+  assert.ok(await page.getByText("No case matches.").isVisible());
   await page.getByRole("searchbox").fill("");
   await page.getByRole("button", { name: /failed/ }).click();
   assert.equal((await shown()).length, json.counts.cases - json.counts.failed);
@@ -463,7 +463,7 @@ inPage("copies by key what approves the case that has the focus", async (page) =
   await viewerOf(page, "lens");
   await page.locator("#case-one_pixel > summary").focus();
   await page.keyboard.press("c");
-  await page.getByText("Copied what approves one_pixel").waitFor();
+  await page.getByText("Copied the command that approves one_pixel").waitFor();
   assert.equal(await page.evaluate(() => navigator.clipboard.readText()), caseOf("one_pixel").approve);
 });
 
@@ -611,7 +611,7 @@ test("shows pictures from the files beside it where they do not fit", async () =
   assert.equal(rebuildPage(mine, "--page-limit", "0", "-o", "../linked.html").code, 0);
   const page = await openPage(browser, join(folder, "linked.html"));
   const viewer = await viewerOf(page, "lens");
-  assert.match(await viewer.locator(".under").innerText(), /from the files beside the page/);
+  assert.match(await viewer.locator(".under").innerText(), /from the files next to the page/);
   assert.ok(!(await viewer.getByLabel("Exposure").isVisible()));
   await viewer.getByRole("button", { name: "Reference" }).click();
   const { width, height } = await viewer.locator("canvas").boundingBox();

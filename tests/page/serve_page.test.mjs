@@ -1137,7 +1137,7 @@ inPage("makes a variable of a parameter's value, gives it to another one and rem
     add = section.getByRole("button", { name: "Add a variable" });
   await add.focus();
   await page.keyboard.press("Enter");
-  const parameter = section.getByLabel("Parameter that takes the variable");
+  const parameter = section.getByLabel("Parameter that uses the variable");
   assert.equal(await parameter.evaluate((node) => node === document.activeElement), true);
   await parameter.selectOption("color_grade.exposure");
   const name = section.getByLabel("Name of the variable");

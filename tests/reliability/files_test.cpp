@@ -150,7 +150,7 @@ TEST(Render, OfAPictureThatFillsTheMemoryIsRefusedWithTheRemedy) {
     Diagnostics faults;
     scene::check_job(scene, job, faults);
     ASSERT_EQ(faults.error_count(), 1);
-    EXPECT_NE(faults.all()[0].message.find("the limit is 16 GiB; render fewer pixels at once"),
+    EXPECT_NE(faults.all()[0].message.find("the limit is 16 GiB (render fewer pixels at once"),
               std::string::npos)
         << faults.all()[0].message;
     job.width_px = 7680;

@@ -163,10 +163,10 @@ function imageSection(image, report, viewers) {
     facts([
       ["Approved", approvedWords(image)],
       [
-        "Held to",
+        "Compared by",
         image.tier === "bits"
-          ? "the bit (renderer, Mesa, CPU, look and effects are those of the approved image)"
-          : "the tolerance",
+          ? "bits (renderer, Mesa, CPU, look and effects are those of the approved image)"
+          : "tolerance",
       ],
       ["Tolerance", image.comparison ? toleranceWords(image.comparison.rules) : null],
       ["Approved by", [sidecar?.approver, sidecar?.approved].filter(Boolean).join(", ") || null],

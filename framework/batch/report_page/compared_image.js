@@ -9,7 +9,7 @@ const MODES = {
   reference: { key: "r", label: "Reference", title: "The approved image" },
   test: { key: "t", label: "Test", title: "The image that this run made" },
   difference: { key: "d", label: "Difference", title: "|reference \u2212 test| times the scale" },
-  heat_map: { key: "h", label: "FLIP", title: "What people see as different: dark 0, bright 1" },
+  heat_map: { key: "h", label: "FLIP", title: "Difference that people see: dark 0, bright 1" },
   wipe: { key: "w", label: "Wipe", title: "Reference left of the line, test right of it" },
 };
 

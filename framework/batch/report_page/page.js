@@ -4,19 +4,19 @@ const KEYS = [
   ["j, k", "next, previous image"],
   ["o", "open or close the case of the image"],
   ["/", "search"],
-  ["?", "these keys"],
+  ["?", "show these keys"],
   ["l", "light, dark, or as the system"],
   ["c", "copy the command that approves the case"],
-  ["a r t d h w", "all, reference, test, difference, FLIP heat map, wipe"],
+  ["a r t d h w", "show all, reference, test, difference, FLIP heat map, wipe"],
   ["Space", "swap reference and test"],
   [", .", "move the wipe"],
   ["[ ]", "exposure, half a stop"],
-  ["\\", "exposure as fitted"],
-  ["{ }", "scale of the difference"],
+  ["\\", "reset the exposure"],
+  ["{ }", "change the scale of the difference"],
   ["+ \u2212 0 1", "zoom in, out, whole picture, 1:1"],
-  ["x", "to the largest difference"],
-  ["b", "frame around failing pixels"],
-  ["m", "areas that are left out or have limits of their own"],
+  ["x", "go to the largest difference"],
+  ["b", "show or hide a frame around failing pixels"],
+  ["m", "show or hide areas that are left out or have limits of their own"],
   ["arrows, drag", "move the picture (click it first)"],
   ["Ctrl + wheel", "zoom; the wheel alone once the picture was clicked"],
 ];
@@ -165,7 +165,7 @@ class Page {
         ? element(
             "div",
             { class: "orphans" },
-            element("b", {}, "No case gives these goldens; remove them, or fix the case:"),
+            element("b", {}, "These goldens belong to no case; remove them, or correct the case:"),
             element(
               "ul",
               {},
@@ -220,7 +220,7 @@ class Page {
         failingPercent(b) - failingPercent(a),
     );
     this.cards = ordered.map((test) => ({ test, node: safeCaseCard(test, this.report, this.viewers) }));
-    this.none = element("p", { class: "quiet", hidden: true }, "No case fits.");
+    this.none = element("p", { class: "quiet", hidden: true }, "No case matches.");
     document.getElementById("cases").append(...this.cards.map(({ node }) => node), this.none);
   }
   toggleKind(kind) {
@@ -288,7 +288,7 @@ class Page {
     if (!card) return tell("Choose a case first (j, k)");
     const { test } = this.cards.find(({ node }) => node === card);
     if (!test.approve) return tell(`${test.name}: nothing to approve`);
-    copy(test.approve, card.querySelector(".command code"), `Copied what approves ${test.name}`);
+    copy(test.approve, card.querySelector(".command code"), `Copied the command that approves ${test.name}`);
   }
   key(event) {
     // Keys with AltGr (Option on a Mac) come with Ctrl and Alt: brackets of many keyboards are such.

@@ -166,10 +166,10 @@ class Viewer extends ComparedImage {
         button("\u2212", "Smaller (-)", () => this.zoomBy(-1)),
         this.zoomWords,
         button("+", "Larger (+)", () => this.zoomBy(1)),
-        button("Fit", "The whole picture (0)", () => this.showWhole()),
-        button("1:1", "A pixel for a pixel (1)", () => this.showPixels()),
+        button("Fit", "Fit the whole picture (0)", () => this.showWhole()),
+        button("1:1", "Zoom to 100 % (1)", () => this.showPixels()),
         this.layer && this.image.comparison
-          ? button("Worst", "To the largest difference (x)", () => this.showWorst())
+          ? button("Worst", "Go to the largest difference (x)", () => this.showWorst())
           : null,
       ),
       this.layer && this.image.comparison
@@ -233,7 +233,7 @@ class Viewer extends ComparedImage {
     show(this.wiper, this.mode === "wipe", this.wipe, `${Math.round(this.wipe * 100)} %`);
     const words = { difference: "|reference \u2212 test| times the scale", heat_map: "dark 0, bright 1" };
     this.words.textContent =
-      words[this.mode] ?? (coloring ? coloring.words : "shown from the files beside the page: no exposure, no values");
+      words[this.mode] ?? (coloring ? coloring.words : "shown from the files next to the page, without exposure and values");
     const shown = this.swapped && this.mode !== "all" ? this.shownKind(this.mode) : this.mode;
     this.canvas.setAttribute("aria-label", `${this.image.name}: ${MODES[shown].title}`);
     this.shape();
@@ -301,7 +301,7 @@ class Viewer extends ComparedImage {
   }
   swap() {
     if (!["all", "reference", "test"].includes(this.mode))
-      return tell("Swaps reference and test where they are shown alone or beside each other");
+      return tell("Space swaps reference and test only where they are shown alone or side by side");
     this.swapped = !this.swapped;
     this.refresh();
   }

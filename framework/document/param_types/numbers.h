@@ -1,4 +1,4 @@
-// What the types that are numbers share. Internal to framework/document/param_types.
+// Code that the types of numbers share. Internal to framework/document/param_types.
 #pragma once
 
 #include <string_view>

@@ -167,7 +167,7 @@ inline constexpr int kMaxLayers = 256;
 inline constexpr int kMaxRepeat = 4096;
 inline constexpr int kMaxIterations = 60000;  ///< llvmpipe silently ends loops after 65,535
 
-/// What a draw of instances draws, and how many.
+/// The primitive of a draw of instances, and their number.
 struct InstanceSpec {
     enum class Primitive { quads, points };  ///< gl_VertexID 0..3 of a strip, or 0
     Primitive primitive = Primitive::quads;
@@ -208,7 +208,8 @@ struct TileListSpec {
     std::string module;            ///< that declares it; "" for the effect itself
     std::string doc;
     Place place;
-    /// Of a texture and of tiles whose side is known: its pass then has the same text in every effect.
+    /// Whether the list is of a texture and its tiles have a known side: its pass then has the same text in
+    /// every effect.
     bool has_common_text() const { return of && tile.param.empty(); }
     std::string runs() const { return name + "_runs"; }  ///< buffer: see glsl/tile_runs.glsl
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}

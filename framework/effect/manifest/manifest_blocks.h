@@ -25,9 +25,9 @@ inline constexpr CountLimits kGroupTileCount{1, 4096};
 inline constexpr CountLimits kRepeatCount{1, kMaxRepeat, 0};
 inline constexpr CountLimits kInstanceCount{1, 1 << 24, 0};  ///< one a pixel of a 4096 x 4096 image
 inline constexpr CountLimits kPerTexelCount{1, 256};
-/// Of a buffer without a grid, by its elements' type.
+/// Limits of a buffer without a grid, by its elements' type.
 CountLimits element_count(const std::string& element);
-/// Of a vector's type: 4 of "uvec4".
+/// Number of components of a vector's type: 4 for "uvec4".
 int components_of(const std::string& element);
 
 inline constexpr int kMaxBins = 1024;
@@ -37,7 +37,7 @@ std::optional<int> pass_offset(std::string_view text);
 
 // ---- forms ----
 
-/// What the name of a thing must be: "the id '{}' must be snake_case ...".
+/// The rule for a thing's name: "the id '{}' must be snake_case ...".
 grammar::Form identifier_form(const std::string& thing);
 /// Text that names what stands elsewhere. The schema checks only how it is written; the parser, which has the
 /// declarations, reports every other.

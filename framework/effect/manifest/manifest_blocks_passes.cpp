@@ -84,7 +84,7 @@ Form defines_form() {
 Block instances_block() {
     return {
         .name = "instances",
-        .doc = "What a draw with a vertex shader draws, and how often.",
+        .doc = "Vertices and number of instances of a draw with a vertex shader.",
         .keys = {required("of", choice({"quads", "points"}), "A strip of 4 vertices, or a single vertex."),
                  optional("count", count_form(kInstanceCount),
                           "Number of instances; with `per`, per texel of that grid."),
@@ -247,7 +247,7 @@ const Block& read_block() {
     static const Block block{
         .name = "read",
         .thing = "the read of '{}'",
-        .doc = "How a pass samples what it reads.",
+        .doc = "How a pass samples an image.",
         .keys = {optional("filter", choice(kFilters),
                           "Filter between texels; `pixel`: no sampler, but the texel at the pixel itself "
                           "([fused passes](#fused-passes)).",

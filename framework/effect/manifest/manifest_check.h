@@ -1,4 +1,4 @@
-// What a manifest must satisfy beyond the types of its fields. Internal to framework/effect.
+// Rules of a manifest beyond the types of its fields. Internal to framework/effect.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a manifest says once, written out for all that follows. Internal to framework/effect.
+// Groups and loops of a manifest, written out for all later stages. Internal to framework/effect.
 #pragma once
 
 #include <filesystem>

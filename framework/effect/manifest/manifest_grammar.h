@@ -1,6 +1,6 @@
-// What effect.json and module.json may say, declared once (core/grammar.h): from here come the parser's
-// checks, the JSON Schemas and the tables of docs/shaders.md. What depends on two parts of a manifest, the
-// parser checks.
+// The keys of effect.json and module.json, declared once (document/grammar.h). The parser's checks, the JSON
+// Schemas and the tables of docs/shaders.md come from this grammar. The parser itself checks rules between
+// two parts of a manifest.
 #pragma once
 
 #include <string>

@@ -18,7 +18,7 @@ struct GroupedSection {
     const grammar::Block& (*group)();  ///< a group; and an entry inside one or with `for`: no key is required
 };
 const std::vector<GroupedSection>& grouped_sections();
-/// What the section may hold: groups in schemas and tables; for a check, what without_groups() leaves.
+/// The form of the section: with groups in schemas and tables; for a check, as without_groups() leaves it.
 grammar::Form section_form(const std::string& name, const std::string& fault_of_none = "");
 
 /// Most values of a variable; most entries of groups in a document, and most bytes of them.
@@ -28,7 +28,7 @@ inline constexpr std::size_t kMaxGroupedBytes = std::size_t(4) << 20;
 
 /// The document with every entry of a group by itself: with the keys that the group gives it, once for each
 /// turn of each `for`, and values in the place of variables. A pass that is a name alone becomes an
-/// object. What has an error, which is reported, is left out.
+/// object. An entry with an error, which is reported, is left out.
 Node without_groups(Node document, Diagnostics& diagnostics);
 
 }  // namespace aftershade

@@ -1,4 +1,4 @@
-// What the checks of a manifest's passes share. Internal to framework/effect.
+// Code that the checks of a manifest's passes share. Internal to framework/effect.
 #pragma once
 
 #include <set>

@@ -12,8 +12,8 @@ namespace aftershade {
 
 /// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only
 /// what an earlier one may have written, that every output and texture is written, that shader files exist.
-/// Every fault is reported; nullopt if there was one. What the shaders' text must agree with is
-/// check_declared_used's (usage_check.h). What is declared once is written out: the passes have the
+/// Every fault is reported; nullopt if there was one. check_declared_used (usage_check.h) compares
+/// declarations with the shaders' text. Groups and loops are written out: the passes have the
 /// conditions of their groups and textures, tile lists have their buffers and passes, and a pass that leaves
 /// out `reads` or `writes` has those that its shaders' text names.
 /// Modules and shared shaders are read from `glsl_folder`, empty for the shipped one; only then may this

@@ -11,9 +11,9 @@
 
 namespace aftershade {
 
-/// What a condition on an optional input begins with: "has.velocity".
+/// The prefix of a condition on an optional input: "has.velocity".
 inline constexpr std::string_view kHasInput = "has.";
-/// What a condition on a number begins with, all of whose values but 0 make the same passes: "nonzero.gain".
+/// The prefix of a condition on a number whose values other than 0 make the same passes: "nonzero.gain".
 inline constexpr std::string_view kNonzero = "nonzero.";
 
 /// "gain" of "gain" and of "nonzero.gain", "depth" of "has.depth".

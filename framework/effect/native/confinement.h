@@ -1,4 +1,4 @@
-// What the kernel keeps untrusted native code from: Landlock, seccomp and limits, where it has them.
+// Confines untrusted native code by the kernel: Landlock, seccomp and limits, if it has them.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace aftershade {
 
-/// What this kernel offers, or what was applied to a process.
+/// Means of confinement that this kernel offers, or that were applied to a process.
 struct Confinement {
     int landlock_abi = 0;  ///< 0: none. Files from 1 on, TCP from 4 on, signals from 6 on (landlock(7))
     bool seccomp = false;  ///< filters of system calls (seccomp(2)), for this processor
@@ -29,7 +29,7 @@ inline constexpr unsigned kMostPluginFiles = 256;
 /// stay as they are]
 Confinement confine_native_code(int stream);
 
-/// What native code can still do, a clause each; what no kernel prevents is not among them.
+/// Actions that native code can still do, a clause each, without those that no kernel prevents.
 std::vector<std::string> confinement_gaps(const Confinement& held);
 
 }  // namespace aftershade

@@ -10,7 +10,7 @@
 
 namespace aftershade {
 
-/// What went wrong in one call, in the plug-in's order; "and 5 more" beyond a limit.
+/// Faults of one call, in the plug-in's order; "and 5 more" beyond a limit.
 class NativeFaults {
 public:
     /// Returns `status`, so that a callback can end with it.
@@ -55,7 +55,7 @@ public:
     NativeOutput(const NativeOutput&) = delete;
     NativeOutput& operator=(const NativeOutput&) = delete;
     const aftershade_output* get() const { return &output_; }
-    /// Adds a fault for whatever is declared and was not set.
+    /// Adds a fault for each declared value that was not set.
     void require_everything();
     NativeResult take() { return std::move(result_); }
 

@@ -15,7 +15,7 @@
 
 namespace aftershade {
 
-/// What a library or an instance gets as aftershade_host. Never moved: plug-ins keep its address.
+/// The aftershade_host of a library or an instance. Never moved: plug-ins keep its address.
 class NativeHost {
 public:
     NativeHost();

@@ -35,7 +35,7 @@ aftershade_library checked_library(const aftershade_library& entry, const std::s
 aftershade_factory checked_factory(const aftershade_factory* factory, const std::string& place);
 aftershade_instance checked_instance(const aftershade_instance* instance, const std::string& place);
 
-/// What a library offers.
+/// The effects of a library.
 struct NativeLibraryEffect {
     std::string id;
     std::string version;

@@ -63,7 +63,7 @@ bool has_nan(const std::vector<std::byte>& bytes) {
 std::string table_fault(const NativeTableType& type, aftershade_element element, std::uint32_t width,
                         std::uint32_t height, std::size_t byte_count) {
     if (element < AFTERSHADE_FLOAT || element > AFTERSHADE_UVEC4)
-        return "has the element " + std::to_string(element) + ", which is none of aftershade_element";
+        return "has the element " + std::to_string(element) + ", which is not an aftershade_element";
     if (NativeElement(element) != type.element)
         return "is filled with " + std::string(native_element_name(NativeElement(element))) +
                ", effect.json declares " + std::string(native_element_name(type.element));

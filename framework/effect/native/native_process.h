@@ -26,9 +26,9 @@ struct NativeProcessOptions {
 
 /// Starts the process with the first call, and again with the first one after it has ended; instances end
 /// with it. It has none of this process's files and few of its variables, and dies with the thread that
-/// started it. What plug-ins print goes to standard error, up to a limit. Throws Error(ErrorKind::effect),
-/// where a plug-in fails, crashes, ends the process or takes too long, naming it and the call.
-/// [one thread at a time]
+/// started it. Text that plug-ins print goes to standard error, up to a limit. Throws
+/// Error(ErrorKind::effect), where a plug-in fails, crashes, ends the process or takes too long, naming it
+/// and the call. [one thread at a time]
 class NativeProcess {
 public:
     explicit NativeProcess(NativeProcessOptions options);
@@ -36,7 +36,7 @@ public:
     NativeProcess(const NativeProcess&) = delete;
     NativeProcess& operator=(const NativeProcess&) = delete;
 
-    /// What a library offers.
+    /// The effects of a library.
     struct Offer {
         std::string contact;
         std::vector<std::pair<std::string, std::string>> effects;  ///< ids and versions
@@ -46,12 +46,12 @@ public:
     /// A number for the instance.
     int create(const std::filesystem::path& library, const NativeDeclaration& declaration,
                const std::string& step);
-    /// What came is checked against the declaration again: the process may lie.
+    /// The received values are checked against the declaration again: the process may lie.
     NativeResult prepare(int instance, const NativeFrame& frame);
     void reset(int instance);
     void destroy(int instance);
 
-    /// What the kernel holds the process to; starts it where it is not there.
+    /// The confinement of the process by the kernel; starts the process if it does not run.
     const Confinement& held();
 
 private:

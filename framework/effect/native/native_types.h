@@ -1,4 +1,4 @@
-// What goes into native code and comes out of it.
+// Inputs and outputs of native code.
 #pragma once
 
 #include <cstddef>
@@ -46,7 +46,7 @@ struct NativeTableType {
     int max_height = 1;
 };
 
-/// What effect.json says that the native code computes.
+/// The values that native code computes, by effect.json.
 struct NativeDeclaration {
     std::string effect_id;
     std::string effect_version;
@@ -64,7 +64,7 @@ struct NativeImage {
     bool present = false;
 };
 
-/// What one call of prepare receives.
+/// The arguments of one call of prepare.
 struct NativeFrame {
     const std::vector<ParamSpec>* specs = nullptr;  ///< the manifest's; never null
     const ParamSet* params = nullptr;               ///< a value for each of them; never null
@@ -99,7 +99,7 @@ struct NativeLogLine {
     std::string text;
 };
 
-/// What prepare computed: complete (every declared uniform and table) and within what is declared.
+/// The results of prepare: complete (every declared uniform and table) and within the declarations.
 struct NativeResult {
     std::map<std::string, NativeUniform> uniforms;
     std::map<std::string, NativeTable> tables;

@@ -13,7 +13,7 @@ namespace aftershade {
 namespace {
 
 [[noreturn]] void broken() {
-    throw Error(ErrorKind::effect, "the process of the plug-ins sent what no host sends");
+    throw Error(ErrorKind::effect, "the process of the plug-ins sent a message that a host never sends");
 }
 
 /// A number of an enum whose values are 0 to `most`.

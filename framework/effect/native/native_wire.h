@@ -1,4 +1,4 @@
-// What goes to native code in a process of its own, and what comes back, as bytes: internal to
+// Messages to and from native code in a separate process, as bytes. Internal to
 // framework/effect.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace aftershade {
 
-/// What a process of native code is requested to do; the words of a request begin with one.
+/// Requests to a process of native code; the words of a request begin with one.
 enum class NativeRequest { open = 1, create, prepare, reset, destroy };
 
 /// Above any sound message: eight tables of the largest size.

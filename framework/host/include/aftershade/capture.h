@@ -26,7 +26,7 @@ class Host;
 /// Row by row, acting on column vectors: clip = matrix * world.
 using Matrix4 = std::array<double, 16>;
 
-/// What is known of the camera; what is not stays empty, and parameters then take their defaults. Values
+/// The known values of the camera. Unknown values stay empty, and parameters then take their defaults. Values
 /// outside a range are Error(usage).
 struct Camera {
     std::optional<double> focus_distance_m{};   ///< from 0.001; along the view axis
@@ -78,7 +78,8 @@ public:
     Capture(int width, int height);
     /// Reads one frame: an EXR file, or the first frame of a capture.json, pattern or folder. Throws
     /// Error(usage) for unknown profiles, roles and colour spaces, Error(document) for faults in capture.json
-    /// and profiles, Error(capture) for what cannot be read or exceeds the host's limits. [the host's thread]
+    /// and profiles, Error(capture) for files that cannot be read or exceed the host's limits. [the host's
+    /// thread]
     static Capture read(const Host& host, const std::filesystem::path& path,
                         const CaptureOptions& options = {});
     Capture(const Capture&) noexcept;
@@ -92,16 +93,16 @@ public:
     /// An image that lies in a texture of HostOptions::share. It is checked and read when a frame is
     /// rendered. Throws Error(usage) as set_image().
     void set_texture(const std::string& role, const GlTexture& texture);
-    /// Throws Error(usage) where there is no image of that role.
+    /// Throws Error(usage) if the capture has no image of that role.
     void remove_image(const std::string& role);
 
-    /// The image of a role. Throws Error(usage) where there is none, or where it is a texture.
+    /// The image of a role. Throws Error(usage) if the capture has none, or if it is a texture.
     Image image(const std::string& role) const;
     bool has_image(const std::string& role) const noexcept;
     std::vector<std::string> roles() const;  ///< of images and textures, sorted
 
-    /// Frames that follow one another have numbers that follow one another; any int. Of a capture from
-    /// arrays 1 at first, of a file the number in its name.
+    /// Consecutive frames have consecutive numbers; any int. A capture from arrays has the number 1 until
+    /// set_frame(), a file the number in its name.
     int frame() const noexcept;
     void set_frame(int frame);
 
@@ -113,13 +114,13 @@ public:
 
     /// Width of a pixel over its height, which round shapes are measured by. 1 at first; of a file its own.
     double pixel_aspect() const noexcept;
-    /// Throws Error(usage) for what is not from 0.01 to 100.
+    /// Throws Error(usage) for values outside 0.01 to 100.
     void set_pixel_aspect(double aspect);
 
     /// Size of the frame's pixels relative to those that values in px refer to: 0.5 for a frame at half the
     /// size. 1 at first; of a file 1 / CaptureOptions::scale_divisor.
     double scale() const noexcept;
-    /// Throws Error(usage) for what is not above 0 and at most 64.
+    /// Throws Error(usage) for values that are not above 0 and at most 64.
     void set_scale(double scale);
 
     /// Primaries of the colours: rec709 (at first, of arrays), acescg, ap0, rec2020, p3d65; "" for others of

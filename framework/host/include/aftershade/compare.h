@@ -29,7 +29,7 @@ struct Tolerance {
     /// At least 0: a difference above `limit` counts where it is also more than this part of its value.
     double relative = 0;
     /// At least 0: a difference counts, also for `hard`, where it is more than this many units in the last
-    /// place of what the coarser of both files stores; images in memory are floats.
+    /// place of the coarser file's type; images in memory are floats.
     double ulp = 0;
 };
 
@@ -59,7 +59,7 @@ struct CompareOptions {
     int threads = 0;  ///< upper limit, from 0 to 1024; 0: as many as there are cores; changes no figure
 };
 
-/// Of the layer's largest difference; places are pixels of the files' data windows.
+/// The layer's largest difference; places are pixels of the files' data windows.
 struct LargestDifference {
     double value = 0;  ///< absolute; +infinity where the values cannot be subtracted
     int x = 0, y = 0;
@@ -94,15 +94,15 @@ struct LayerFigures {
 
 struct Comparison {
     Verdict verdict = Verdict::same;
-    /// What keeps the files from being compared: layers, channels and windows of one alone, or why a file
-    /// cannot be read.
+    /// Reasons why the files cannot be compared: layers, channels and windows of one file alone, or a file
+    /// that cannot be read.
     std::vector<std::string> faults;
-    /// What is not compared, or has equal numbers and is another picture: the verdict is at least a warning.
+    /// Content that is not compared, or whose equal numbers mean another picture: at least a warning.
     std::vector<std::string> warnings;
     std::vector<std::string> notes;    ///< on how the files were read
     std::vector<LayerFigures> layers;  ///< in the reference's order
     std::vector<std::string> labels;   ///< of every layer of either file
-    /// Labels of what the verdict does not depend on: layers that no limit holds, and those that are ignored.
+    /// Labels of layers that the verdict does not depend on: layers without a limit, and ignored layers.
     std::vector<std::string> not_judged;
 };
 
@@ -112,7 +112,7 @@ AFTERSHADE_API Comparison compare(const std::filesystem::path& reference, const 
                                   const CompareOptions& options = {});
 
 /// Compares two images of one size, type and channel count as a layer of this role: color, display, alpha,
-/// depth, velocity, id or data; the alpha of color and display is a layer "A" of its own. Else as above;
+/// depth, velocity, id or data. The alpha of color and display is a layer "A" of its own. Otherwise as above;
 /// CompareOptions::roles must be empty. [thread-safe]
 AFTERSHADE_API Comparison compare(const Image& reference, const Image& test,
                                   const std::string& role = "color", const CompareOptions& options = {});

@@ -10,8 +10,8 @@
 
 namespace aftershade::host {
 
-/// A value as a document writes it, for what has no simpler form: curves, tables, scattering profiles, values
-/// by keys ({"keys": {"1": 2.0, "24": 5.6}}) or of the capture ({"from": "camera.f_number"}).
+/// A value as a document writes it, for types without a simpler form: curves, tables, scattering profiles,
+/// values by keys ({"keys": {"1": 2.0, "24": 5.6}}) or of the capture ({"from": "camera.f_number"}).
 struct Json {
     std::string text;
     bool operator==(const Json&) const = default;

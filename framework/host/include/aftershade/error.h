@@ -10,8 +10,8 @@
 
 namespace aftershade::host {
 
-/// What went wrong, for programs; the message is for people. New kinds may come with a minor version: treat
-/// one that you do not expect like `effect`.
+/// The kind of failure, for programs; the message is for people. New kinds may come with a minor version:
+/// treat one that you do not expect like `effect`.
 enum class ErrorKind {
     usage,       ///< the calling program: a wrong argument, thread or order of calls, a value out of range
     document,    ///< a look, manifest, profile or capture.json does not parse or does not fit its effects
@@ -57,7 +57,7 @@ public:
     /// Every fault and every warning of a document that was being read, at least one, in the order found.
     const std::vector<Diagnostic>& diagnostics() const noexcept;
 
-    // Of the first diagnostic that is an error.
+    // Message and place of the first diagnostic that is an error.
     const std::string& message() const noexcept;
     const std::string& file() const noexcept;
     int line() const noexcept;

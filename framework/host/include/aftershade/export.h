@@ -1,4 +1,4 @@
-// What the shared library exports; every other symbol of it is hidden.
+// Marks the symbols that the shared library exports; it hides all others.
 #pragma once
 
 #define AFTERSHADE_API __attribute__((visibility("default")))

@@ -7,7 +7,7 @@
 //
 // Fences. GL orders the commands of two contexts only where fences say so:
 // - Input. After the commands that write the textures, the caller calls glFenceSync and glFlush and gives the
-//   fence as RenderOptions::wait; the Host waits for it on the GPU, does not delete it, and the caller may
+//   fence as RenderOptions::wait. The Host waits for it on the GPU and does not delete it; the caller may
 //   delete it when the call has returned. Without one, those commands must have finished (glFinish).
 // - Output. With RenderOptions::wants_fence, Result::fence() is a fence behind the Host's last write: the
 //   caller waits for it (glWaitSync, or glClientWaitSync) before it reads a target or writes an input again,

@@ -56,7 +56,7 @@ AFTERSHADE_API const char* backend_name(Backend backend) noexcept;
 
 struct HostLimits {
     int max_side_px = 16384;  ///< of images that are read; from 1 to 65536; beyond: Error(capture)
-    /// Of the channels of one file that are read; at least 1; beyond: Error(capture).
+    /// Bytes of the channels that are read from one file; at least 1; above that: Error(capture).
     std::uint64_t max_image_bytes = 512ull * 1024 * 1024;
 };
 
@@ -119,7 +119,7 @@ public:
     /// Every effect, sorted by id; manifests are read from disk each time. Throws Error(document) with every
     /// fault of every manifest; with `faults`, these go there, and their effects are left out.
     std::vector<EffectInfo> effects(std::vector<Diagnostic>* faults = nullptr) const;
-    /// One of them. Throws Error(usage) where there is none, Error(document) for faults of its manifest.
+    /// One of them. Throws Error(usage) for an unknown id, Error(document) for faults of its manifest.
     EffectInfo effect(const std::string& id) const;
     std::vector<NameAndSummary> profiles() const;  ///< of producers of captures, sorted
 

@@ -39,7 +39,7 @@ public:
     int channels() const noexcept;  ///< 1 to 4
     ElementType type() const noexcept;
     bool empty() const noexcept;
-    /// The first pixel; nullptr where there is none. A row takes width * channels * 4 bytes.
+    /// The first pixel; nullptr for an empty image. A row takes width * channels * 4 bytes.
     const void* data() const noexcept;
     /// width * height * channels values. Throws Error(usage) where the type is another one.
     std::span<const float> floats() const;
@@ -62,12 +62,12 @@ struct ArrayView {
     /// Bytes from one row to the next: a multiple of 4, and at least width * channels * 4 in magnitude;
     /// negative where rows lie from the bottom up, and `data` is still the top one's. 0: no padding.
     std::ptrdiff_t row_stride = 0;
-    /// Bytes that may be read from `data` on, which are held against the size; 0: not checked. Must be 0
+    /// Bytes that may be read from `data` on; the size is checked against them; 0: not checked. Must be 0
     /// where row_stride is negative.
     std::size_t size_bytes = 0;
 };
 
-/// A view without padding. Its size is held against the array's when it is used.
+/// A view without padding. Its use checks the size against the array's.
 inline ArrayView view_of(std::span<const float> values, int width, int height, int channels) noexcept {
     return {values.data(), ElementType::float32, width, height, channels, 0, values.size_bytes()};
 }

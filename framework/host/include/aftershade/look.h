@@ -23,8 +23,8 @@ namespace aftershade::host {
 class Access;
 class Host;
 
-/// What to do where an image of the capture or of the result has pixels that are NaN or infinite. Positive
-/// infinity is sound in roles whose outside is infinite, such as depth. Textures are not looked at.
+/// Handling of images of the capture or of the result with pixels that are NaN or infinite. Positive
+/// infinity is valid in roles whose outside is infinite, such as depth. Textures are not checked.
 enum class NonFinite {
     ignore,  ///< do not look for them
     report,  ///< count them in Result::non_finite
@@ -32,13 +32,13 @@ enum class NonFinite {
     mend     ///< replace them from the pixels around, in captures before the effects see them, and report
 };
 
-/// How a frame is rendered. What it points to need not outlive the call.
+/// How a frame is rendered. Objects that it points to need not outlive the call.
 struct RenderOptions {
     /// Roles to be given back. Empty: every role that some step makes, else color. One that no step makes is
     /// the capture's own; one that neither has is Error(capture).
     std::vector<std::string> roles{};
-    /// Textures of HostOptions::share that results are written into; such a role is not read back. Of the
-    /// data window's size, and of roles that some step makes, else Error(usage).
+    /// Textures of HostOptions::share that results are written into; such a role is not read back. They must
+    /// have the data window's size, and some step must make their role, else Error(usage).
     std::map<std::string, GlTexture> targets{};
     void* wait = nullptr;      ///< a GLsync: see gl.h; nullptr: the caller's commands have finished
     bool wants_fence = false;  ///< see gl.h; false: the call returns when the targets are written
@@ -53,8 +53,8 @@ struct RenderOptions {
     const Capture* next = nullptr;
     bool begins_shot = false;  ///< a cut: nothing before it counts. Sessions only; elsewhere it always is one
     double fps = 24;           ///< frames a second, for effects that need it; above 0, finite
-    /// A stop that is requested before the frame's passes begin ends the call with Error(interrupted). What
-    /// was rendered before stays valid.
+    /// A stop that is requested before the frame's passes begin ends the call with
+    /// Error(interrupted). Earlier results stay valid.
     std::stop_token stop{};
 };
 
@@ -89,7 +89,7 @@ struct WriteOptions {
     std::string compression = "zip";  ///< EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab
 };
 
-/// What a look made of one frame. Copies share their pixels. [value type; thread-safe to read]
+/// The result of a look for one frame. Copies share their pixels. [value type; thread-safe to read]
 class AFTERSHADE_API Result {
 public:
     Result(const Result&) noexcept;
@@ -129,9 +129,9 @@ private:
     std::shared_ptr<const Data> data_;
 };
 
-/// Frames in their order, with what effects keep from one to the next (history). It has GPU memory of its
-/// own; several sessions of one look do not disturb each other. Frames whose numbers do not follow one
-/// another begin history again. Move only. [the host's thread; may be destroyed on any]
+/// Renders frames in order, with the history that effects keep from one frame to the next. It has GPU memory
+/// of its own; several sessions of one look do not disturb each other. History restarts at a gap in the frame
+/// numbers. Move only. [the host's thread; may be destroyed on any]
 class AFTERSHADE_API Session {
 public:
     Session(Session&&) noexcept;
@@ -141,8 +141,9 @@ public:
     /// Renders the next frame. After an error the session continues with the next frame. Throws as
     /// Look::render.
     Result render(const Capture& capture, const RenderOptions& options = {});
-    /// Of a frame that consists of `count` captures (sub-frames, for effects that accumulate them) the
-    /// `index`-th, from 0; each in turn, all with the frame's number. The result of the last has the images.
+    /// Renders the `index`-th capture, from 0, of a frame that consists of `count` captures (sub-frames, for
+    /// effects that accumulate them). Call it for each in turn, all with the frame's number. The last result
+    /// has the images.
     Result render_subframe(const Capture& capture, int index, int count, const RenderOptions& options = {});
     /// Reads what the look needs of a frame, with its sub-frames, neighbours, cuts and frame rate, and
     /// renders it, as `aftershade run` does; the frame behind it is read at the same time. Options that the
@@ -179,8 +180,8 @@ struct LookParam {
 struct LookOptions {
     std::vector<std::string> taps{};           ///< "step.texture": intermediates that each result has too
     std::map<std::string, Value> variables{};  ///< above the look's own "vars"
-    /// Of a look that is given as text: the folder that its files are named from; empty: the working
-    /// directory. What messages call the text.
+    /// For a look that is given as text: the folder that its files are relative to (empty: the working
+    /// directory), and the text's name in messages.
     std::filesystem::path folder{};
     std::string name = "look text";
 };
@@ -207,19 +208,20 @@ public:
     /// value of the wrong type or out of its range, a relation to another parameter that no longer holds. The
     /// look is then as it was.
     void set(const std::string& name, const Value& value);
-    /// Several at once, so that relations are held against all of them.
+    /// Several at once, so that relations are checked against all of them.
     void set(const std::map<std::string, Value>& values);
     /// As the look, its preset or the manifest gives it. Throws Error(usage) for unknown names.
     void reset(const std::string& name);
     /// Throws Error(usage) for unknown names.
     Value get(const std::string& name) const;
 
-    /// Renders a frame by itself: history begins with it. Throws Error(usage) for options out of range,
-    /// Error(capture) where the capture lacks an image that a step requires or has values that a step does
-    /// not take, Error(gl) with the first frame, Error(effect), Error(memory), Error(interrupted).
+    /// Renders a frame by itself: history begins with it. Throws Error(usage) for options out of range.
+    /// Throws Error(capture) if the capture lacks an image that a step requires, or has values that a step
+    /// does not accept. Also throws Error(gl) with the first frame, Error(effect), Error(memory),
+    /// Error(interrupted).
     Result render(const Capture& capture, const RenderOptions& options = {});
-    /// Reads what the look needs of a file, pattern, folder or capture.json, and its first frame; what
-    /// Capture::read reads, but for objects that the look names. Throws as Capture::read.
+    /// Reads the images that the look needs from a file, pattern, folder or capture.json, of its first frame.
+    /// The result is that of Capture::read, except for objects that the look names. Throws as Capture::read.
     Capture read(const std::filesystem::path& path, const CaptureOptions& options = {}) const;
     Session session();
 

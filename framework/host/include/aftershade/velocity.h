@@ -32,7 +32,7 @@ enum class VelocityVerdict {
 /// "confirmed", "undecided", "wrong", "no_fit", "untestable". Never fails.
 AFTERSHADE_API const char* velocity_verdict_name(VelocityVerdict verdict) noexcept;
 
-/// Of one role of motion.
+/// The check of one role of motion.
 struct VelocityCheck {
     std::string role;  ///< velocity or velocity_next
     VelocityVerdict verdict = VelocityVerdict::untestable;
