@@ -18,7 +18,7 @@ UNBIASED = {"min_samples": 1, "prefilter": False, "normalize": "none", "distant_
 MODES: dict[str, Document] = {"`prefilter`": {"prefilter": True}, "`normalize` missing": {"normalize": "missing"}, "`normalize` all": {"normalize": "all"},
          "`sampling` widest_fit": {"sampling": "widest_fit"}, "`sampling` widest_fit_unbiased": {"sampling": "widest_fit_unbiased"},
          "`sampling` channels": {"sampling": "channels"}, "`distant_share` 0.05": {"distant_share": 0.05},
-         "the defaults, but for `guiding`": {"min_samples": 8, "normalize": "missing", "distant_share": 0.05}}
+         "the defaults without `guiding`": {"min_samples": 8, "normalize": "missing", "distant_share": 0.05}}
 
 
 class Moments:
