@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/gl_options.h"
 #include "framework/batch/golden_report.h"
 
 namespace CLI {

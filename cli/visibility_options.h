@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/gl_options.h"
 #include "framework/base/diagnostics.h"
 #include "framework/scene/visibility.h"
 
