@@ -93,7 +93,7 @@ private:
     void history_validity() {
         for (const auto& [pass, tokens] : tokens_)
             if (has_member(tokens, "frame", "history_valid")) return;
-        diagnostics_.warning({(manifest_.folder / "effect.json").string()},
+        diagnostics_.warning({manifest_.document.string()},
                              "the effect has history, but no shader reads frame.history_valid: after a cut "
                              "it would blend with nothing");
     }
@@ -102,7 +102,7 @@ private:
     void warmup() {
         if (manifest_.warmup || manifest_.accumulates_subframes) return;
         diagnostics_.warning(
-            {(manifest_.folder / "effect.json").string()},
+            {manifest_.document.string()},
             "the effect has history, but declares no warmup: a chunk of a sequence begins "
             "without the frames before it, and shows a seam (add \"warmup\": "
             "{\"frames\": N, \"error\": E}" +

@@ -82,6 +82,7 @@ struct Instances {
     gpu::Primitive primitive = gpu::Primitive::quads;
     int count = 0;
     std::optional<BufferHandle> indirect{};
+    bool covers = false;  ///< the targets as a whole, which nothing need have filled
 };
 
 /// Work groups of a compute pass; or as many as the buffer says (DispatchIndirectCommand).
@@ -121,10 +122,11 @@ struct Pass {
     Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
     Fusing fusing = Fusing::never;
-    /// Of a draw, or of instances that are tiles, whose program is a compute shader that stores the targets as
-    /// images: the unit of the first. -1: fragments draw them.
+    /// Of a draw, or of instances that are tiles, whose program is a compute shader that stores the targets
+    /// as images: the unit of the first. -1: fragments draw them.
     int first_target_unit = -1;
-    std::string why_drawn{};  ///< why a compute shader cannot do that; "" where it does, or none was asked for
+    std::string
+        why_drawn{};  ///< why a compute shader cannot do that; "" where it does, or none was asked for
 
     bool computes() const { return kind == PassKind::compute || first_target_unit >= 0; }
 };

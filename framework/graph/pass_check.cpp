@@ -69,8 +69,8 @@ private:
         if (pass_.kind == PassKind::copy) check_copy();
         if (!draws() && pass_.blend != gpu::Blend::none) fail("blends, but draws nothing");
         if (pass_.program && pass_.program->is_compute() != pass_.computes())
-            fail(fmt::format("{}, but its program '{}' does the other", pass_.computes() ? "computes" : "draws",
-                             pass_.program->label()));
+            fail(fmt::format("{}, but its program '{}' does the other",
+                             pass_.computes() ? "computes" : "draws", pass_.program->label()));
     }
 
     void check_copy() const {
@@ -210,7 +210,7 @@ private:
             if (gpu::is_integer(texture.desc.format))
                 fail(fmt::format("blends onto '{}', which holds integers", texture.name));
             check_filled(texture, target.level, target.layer, "blends onto");
-        } else if (pass_.kind == PassKind::instances && !texture.options.partial) {
+        } else if (pass_.kind == PassKind::instances && !pass_.instances.covers && !texture.options.partial) {
             check_filled(texture, target.level, target.layer, "draws over parts of");
         }
     }

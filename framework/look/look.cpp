@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/base/path_bounds.h"
+#include "framework/base/text.h"
 #include "framework/document/grammar_reader.h"
 #include "framework/look/look_grammar.h"
 
@@ -188,6 +189,14 @@ private:
         if (!is_too_large_) look_.steps.push_back(std::move(step));
     }
 
+    /// Of an ISF file: its name, as a step's.
+    static std::string name_of_effect(const std::string& effect) {
+        const fs::path path = effect;
+        return effect.empty() || is_snake_case(effect)
+                   ? effect
+                   : snake_case((is_isf_path(path) ? path.stem() : path.filename()).string());
+    }
+
     LookStep parse_step(const Node& written, Scope& scope) {
         const Node node = filled(written, scope);
         if (is_too_large_) return {};
@@ -201,7 +210,9 @@ private:
         step.effect = reader.text("effect");
         // An ill-formed id too: two steps with it do not share a name.
         const Node* name = node.find("name");
-        step.name = scope.prefix + (name && name->is_string() ? name->string : step.effect);
+        step.name = scope.prefix + (name && name->is_string() ? name->string : name_of_effect(step.effect));
+        if (reader.has("space")) step.space = reader.choice<IsfSpace>("space");
+        step.space_place = reader.place("space");
         step.enabled = reader.boolean("enabled") && scope.enabled;
         if (reader.has("preset")) step.preset = reader.text("preset");
         if (const Node* params = reader.find("params")) step.params = params->members;
