@@ -1,4 +1,5 @@
 #include "framework/effect/registry.h"
+#include "framework/effect/isf/isf_effect.h"
 #include "framework/effect/manifest/manifest_reader.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/base/diagnostics.h"
-#include "framework/effect/isf/isf_effect.h"
+#include "framework/effect/isf/isf_types.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {

@@ -189,14 +189,6 @@ private:
         if (!is_too_large_) look_.steps.push_back(std::move(step));
     }
 
-    /// Of an ISF file: its name, as a step's.
-    static std::string name_of_effect(const std::string& effect) {
-        const fs::path path = effect;
-        return effect.empty() || is_snake_case(effect)
-                   ? effect
-                   : snake_case((is_isf_path(path) ? path.stem() : path.filename()).string());
-    }
-
     LookStep parse_step(const Node& written, Scope& scope) {
         const Node node = filled(written, scope);
         if (is_too_large_) return {};
@@ -210,7 +202,8 @@ private:
         step.effect = reader.text("effect");
         // An ill-formed id too: two steps with it do not share a name.
         const Node* name = node.find("name");
-        step.name = scope.prefix + (name && name->is_string() ? name->string : name_of_effect(step.effect));
+        step.name =
+            scope.prefix + (name && name->is_string() ? name->string : default_step_name(step.effect));
         if (reader.has("space")) step.space = reader.choice<IsfSpace>("space");
         step.space_place = reader.place("space");
         step.enabled = reader.boolean("enabled") && scope.enabled;
@@ -325,6 +318,11 @@ std::string with_json_numbers(const std::string& text) {
 }
 
 }  // namespace
+
+std::string default_step_name(const std::string& effect) {
+    if (effect.empty() || is_snake_case(effect)) return effect;
+    return snake_case(is_isf_path(effect) ? fs::path(effect).stem().string() : effect);
+}
 
 Node parse_command_value(const std::string& text, const Place& place) {
     Diagnostics not_json;

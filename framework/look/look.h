@@ -12,7 +12,7 @@
 #include "framework/base/diagnostics.h"
 #include "framework/document/document.h"
 #include "framework/document/param.h"
-#include "framework/effect/isf/isf_effect.h"
+#include "framework/effect/isf/isf_types.h"
 
 namespace aftershade {
 
@@ -76,6 +76,9 @@ using LookVariables = std::map<std::string, Node>;
 
 /// A value of the command line: JSON where it reads as JSON, else a bare word. All of it stands at `place`.
 Node parse_command_value(const std::string& text, const Place& place);
+
+/// What a step without a `name` is called: its effect's id, or the name of an ISF file in snake_case.
+std::string default_step_name(const std::string& effect);
 
 /// Reads the form of the document and of every look that it uses ({"use": "lens.json"}); whether effects
 /// exist and values fit is bind_pipeline's to say.

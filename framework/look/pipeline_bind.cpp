@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "framework/base/option.h"
@@ -252,7 +251,6 @@ private:
     }
 
     void warn_of_order(const LookStep& look_step, const PipelineStep& step) {
-        warn_of_lost_display(look_step, step);
         for (const ModuleSpec& module : step.manifest->modules)
             for (const PipelineStep& earlier : pipeline_.steps)
                 for (const ModuleSpec& other : earlier.manifest->modules)
@@ -262,22 +260,6 @@ private:
                                                  "', but effects of the " + module.name +
                                                  " belong before those of the " + other.name +
                                                  ": move it before '" + earlier.name + "'");
-    }
-
-    /// A view transform makes display anew, and what came before it is lost.
-    void warn_of_lost_display(const LookStep& look_step, const PipelineStep& step) {
-        const auto is_display = [](const auto& image) {
-            return kind_of_role(image.role) == RoleKind::display;
-        };
-        const auto& [inputs, outputs] = std::tie(step.manifest->inputs, step.manifest->outputs);
-        if (std::ranges::any_of(inputs, is_display) || std::ranges::none_of(outputs, is_display)) return;
-        for (const PipelineStep& earlier : pipeline_.steps)
-            if (std::ranges::any_of(earlier.manifest->outputs, is_display) &&
-                std::ranges::any_of(earlier.manifest->inputs, is_display))
-                diagnostics_.warning(look_step.place,
-                                     "step '" + step.name + "' makes display from color, so that what '" +
-                                         earlier.name + "' has drawn into display is lost: move '" +
-                                         step.name + "' before '" + earlier.name + "'");
     }
 
     void apply_preset(const LookStep& look_step, PipelineStep& step) {

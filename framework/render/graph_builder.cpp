@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/document/formula.h"
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
@@ -71,11 +72,11 @@ int side_of(const GridSpec& grid, int axis, const ParamReader& params, int width
     });
     // A NaN is no size either.
     if (!(side.value <= kMaxSide))
-        throw Error(ErrorKind::effect, "the size \"" + formula + "\" is " + format_number(side.value) +
-                                           " texels for a frame of " + std::to_string(width) + " x " +
-                                           std::to_string(height) + "; the limit is " +
-                                           std::to_string(kMaxSide) +
-                                           " (write a smaller one, or render at a smaller --scale)");
+        throw Error(ErrorKind::effect,
+                    "the size \"" + formula + "\" is " + format_number(side.value) +
+                        " texels for a frame of " + std::to_string(width) + " x " + std::to_string(height) +
+                        "; the limit is " + std::to_string(kMaxSide) + " (write a smaller one" +
+                        advice(", or render with a smaller ", Option::scale, "", "") + ")");
     return std::max(1, int(std::max(side.value, 1.0)));
 }
 

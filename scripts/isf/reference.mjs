@@ -1,12 +1,12 @@
 // reference.mjs JOBS OUT: ISF files through the format's own renderer in Chromium on software GL. JOBS is a list of
 // {"name", "fragment", "vertex", "values", "images"} with a width, a height and frames; OUT gets for each job the frames' RGBA
-// bytes from the top, in base64, or a reason. `fixes` puts four faults of that renderer right, see below.
+// bytes from the top, in base64, or a reason. `fixes` puts five faults of that renderer right, see below.
 import { readFileSync, writeFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { basename, dirname, join, resolve } from "node:path";
 
 const [, , jobsFile, outFile] = process.argv;
-const { width, height, fps, frames, picture, jobs, fixes } = JSON.parse(readFileSync(jobsFile));
+const { width, height, fps, frames, picture, jobs, fixes, mesa } = JSON.parse(readFileSync(jobsFile));
 const modules = process.env.AFTERSHADE_ISF_MODULES ?? "build/isf-modules";
 const require = createRequire(join(resolve(modules), "/"));
 const { chromium } = require("playwright-core");
@@ -18,10 +18,12 @@ for (const folder of ["lib", "vendor"])
   for (const file of readdirSync(join(root, folder)))
     if (file.endsWith(".js")) sources[basename(file, ".js")] = readFileSync(join(root, folder, file), "utf8");
 
+// Two software GLs: Mesa's has the sines that noise is made of here, SwiftShader filters textures of 8 bits as exactly as floats.
+const kMesa = ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"];
+const kSwiftShader = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 const browser = await chromium.launch({
   executablePath: process.env.AFTERSHADE_CHROMIUM ?? "/usr/bin/chromium",
-  // Mesa's llvmpipe, as here: the sines that noise is made of are then the same.
-  args: ["--no-sandbox", "--force-color-profile=srgb", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
+  args: ["--no-sandbox", "--force-color-profile=srgb", ...(mesa ? kMesa : kSwiftShader)],
   env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: "1", EGL_PLATFORM: "surfaceless" },
 });
 const page = await browser.newPage();
@@ -37,6 +39,7 @@ await page.evaluate(
       return loaded[name].exports;
     };
     window.isf = load("main");
+    window.isf.Texture = load("ISFTexture");
     if (!fixed) return;
     // Fault 1: passes read what the last frame, and not this one, has written. Fault 2: a macro's arguments end at the first ")".
     const draw = window.isf.Renderer.prototype.draw;
@@ -124,6 +127,15 @@ for (const job of jobs)
           return { reason: (error && (error.message || String(error))) || "not valid" };
         }
         for (const [name, value] of Object.entries(task.values)) renderer.setValue(name, value);
+        // Fault 5: it does not load what the file imports.
+        const imports = {};
+        if (fixed) gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+        for (const [name, png] of Object.entries(fixed ? task.imports : {})) {
+          imports[name] = new Image();
+          imports[name].src = `data:image/png;base64,${png}`;
+          await imports[name].decode();
+          renderer.uniforms[name].texture = new window.isf.Texture({}, renderer.contextState);
+        }
         const pictures = {};
         for (let frame = 0; frame <= Math.max(...wanted); ++frame) {
           now = (1000 * frame) / rate;
@@ -133,6 +145,7 @@ for (const job of jobs)
           // draw() gives its buffers the first units, those of images too that were set before; a video sets them in each frame.
           renderer.contextState.textureIndex = renderer.renderBuffers.length;
           for (const name of task.images) renderer.setValue(name, input);
+          for (const [name, image] of Object.entries(imports)) renderer.setValue(name, image);
           renderer.draw(canvas);
           if (!wanted.includes(frame)) continue;
           const found = new Uint8Array(4 * size[0] * size[1]);

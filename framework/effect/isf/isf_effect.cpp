@@ -5,10 +5,12 @@
 
 #include "framework/base/text.h"
 #include "framework/effect/glsl_names.h"
+#include "framework/effect/isf/isf_file.h"
 #include "framework/effect/isf/isf_formula.h"
 #include "framework/effect/isf/isf_nodes.h"
 #include "framework/effect/isf/isf_params.h"
 #include "framework/effect/manifest/manifest_reader.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -29,7 +31,7 @@ class EffectMaker {
 public:
     EffectMaker(const IsfFile& file, std::string id, IsfSpace space)
         : file_(file), id_(std::move(id)), space_(space), words_(file), names_(file, words_) {
-        output_ = space == IsfSpace::display ? "display" : "color";
+        output_ = space == IsfSpace::display ? kDisplayRole : kColorRole;
         nothing_ = names_.make("nothing");
         find_images();
     }
@@ -74,6 +76,12 @@ private:
     }
     std::string stem() const { return file_.path.stem().string(); }
     bool has_vertex() const { return !file_.vertex_file.empty(); }
+    /// A role of a capture whose image is no picture: depth, motion, directions, masks.
+    static bool is_data(const std::string& name) {
+        const auto role = find_role(name);
+        return role && (role->kind == RoleKind::distance || role->kind == RoleKind::motion ||
+                        role->kind == RoleKind::direction || role->kind == RoleKind::coverage);
+    }
     bool is_linear() const { return space_ == IsfSpace::linear; }
 
     void find_images() {
@@ -81,7 +89,7 @@ private:
             if (input.type != Type::image && input.type != Type::audio) continue;
             Image image{input.name, names_.of(input.name), &input, nullptr, input.type == Type::audio};
             const std::string& name = image.isf_name;
-            image.is_optional = name == "depth" || name == "velocity" || name == "normal" || name == "mask";
+            image.is_optional = is_data(name);
             image.role = image.is_optional ? name : output_;
             if (words_.all.contains(name)) images_.push_back(std::move(image));
         }
@@ -222,7 +230,7 @@ private:
                 if (!keeps(image)) continue;
                 name += ".prev";
             }
-            const bool is_exact = image.is_optional && image.role != "mask";
+            const bool is_exact = image.is_optional && !find_role(image.role)->filterable;
             reads.push_back(is_exact ? text(name) : read(name, "linear"));
             add_member(defines, "ISF_IMAGE_" + std::to_string(i),
                        text(name.ends_with(".prev") ? image.name + "_prev" : name));

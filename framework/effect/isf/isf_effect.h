@@ -7,14 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "framework/effect/isf/isf_file.h"
+#include "framework/effect/isf/isf_types.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {
-
-/// What a filter gets: encoded 0 to 1, as its author saw it, or scene-linear light. Alpha is straight in
-/// both.
-enum class IsfSpace { display, linear };
 
 struct IsfEffect {
     Node manifest;                               ///< the content of an effect.json, with places in the file

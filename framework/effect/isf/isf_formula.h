@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "framework/effect/isf/isf_file.h"
+#include "framework/effect/isf/isf_types.h"
 
 namespace aftershade {
 

@@ -8,6 +8,7 @@
 #include "framework/base/path_bounds.h"
 #include "framework/base/text.h"
 #include "framework/effect/isf/isf_effect.h"
+#include "framework/effect/isf/isf_file.h"
 #include "framework/effect/isf/isf_nodes.h"
 #include "framework/effect/manifest/manifest_reader.h"
 

@@ -6,6 +6,7 @@
 #include "framework/base/text.h"
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/manifest/manifest_check.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -34,8 +35,8 @@ IsfWords::IsfWords(const IsfFile& file) {
 }
 
 IsfNames::IsfNames(const IsfFile& file, const IsfWords& words) : words_(words) {
-    for (const char* output : {"display", "color"})
-        for (const std::string& name : relatives(output)) taken_.insert(name);
+    for (const std::string_view output : {kDisplayRole, kColorRole})
+        for (const std::string& name : relatives(std::string(output))) taken_.insert(name);
     for (const IsfInput& input : file.inputs) {
         const bool is_global = input.type == IsfInput::Type::image || input.type == IsfInput::Type::audio;
         names_[input.name] = unique(snake_case(input.name), is_global, input.name);

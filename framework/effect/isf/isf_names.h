@@ -4,8 +4,9 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
-#include "framework/effect/isf/isf_file.h"
+#include "framework/effect/isf/isf_types.h"
 
 namespace aftershade {
 
