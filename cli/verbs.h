@@ -27,6 +27,7 @@ using Verb = std::function<ExitCode()>;
     VERB(list, "List effects and scattering profiles")                                               \
     VERB(describe, "Show an effect's inputs, outputs and parameters, or a scattering profile")       \
     VERB(new, "Create the folder of a new effect that runs as it is")                                \
+    VERB(import, "Make the folder of an effect from another program's filter")                       \
     VERB(check, "Check the documents, shaders and values of an effect or a look; exits 1 on faults") \
     VERB(warm, "Compile a look's shaders into the caches, so that the first frame need not wait")    \
     VERB(schema, "Print the JSON Schema of a kind of document, for editors")                         \

@@ -54,6 +54,26 @@ bool is_snake_case(std::string_view name) {
     return !name.empty() && is_letter(name.front()) && std::all_of(name.begin(), name.end(), fits);
 }
 
+std::string snake_case(std::string_view text) {
+    const auto is_upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+    const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::string name;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        const bool fits = is_upper(c) || is_lower(c) || is_digit(c);
+        const char before = i > 0 ? text[i - 1] : '_', after = i + 1 < text.size() ? text[i + 1] : '_';
+        // "aB", "3B", and the last of "ABCd".
+        const bool begins_word =
+            is_upper(c) && (is_lower(before) || is_digit(before) || (is_upper(before) && is_lower(after)));
+        if ((!fits || begins_word) && !name.empty() && name.back() != '_') name += '_';
+        if (fits) name += is_upper(c) ? char(c - 'A' + 'a') : c;
+    }
+    while (name.ends_with('_')) name.pop_back();
+    if (name.empty()) return "unnamed";
+    return is_digit(name.front()) ? "n" + name : name;
+}
+
 std::string lower_case(std::string_view text) {
     std::string result(text);
     for (char& c : result)

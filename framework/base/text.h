@@ -15,6 +15,9 @@ bool is_snake_case(std::string_view name);
 /// The text of an error after an invalid name: "<thing> 'Name' " and this.
 inline constexpr const char* kMustBeSnakeCase = "must be snake_case: a-z, 0-9 and _, beginning with a letter";
 
+/// Words of letters and digits, as "halfSize", "Half Size" and "half-size" have them, as "half_size".
+std::string snake_case(std::string_view text);
+
 /// A-Z as a-z; every other byte unchanged, in any locale.
 std::string lower_case(std::string_view text);
 

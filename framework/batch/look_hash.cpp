@@ -59,8 +59,11 @@ std::string LookHasher::text_of(const GoldenCase& test) {
         text += read_text_file(look->files[i], ErrorKind::usage);
     for (const std::string& set : test.sets) text += "\n" + set;
     std::set<std::string> ids;
-    for (const LookStep& step : look->steps) ids.insert(step.effect);
+    for (const LookStep& step : look->steps)
+        if (!is_isf_path(step.effect)) ids.insert(step.effect);
     for (const std::string& id : ids) text += effect_text(id);
+    for (const PipelineStep& step : pipeline.steps)
+        if (is_isf_path(step.manifest->document)) text += content_of_effect(*step.manifest, glsl_folder_);
     for (const PipelineStep& step : pipeline.steps) text += content_of_values(step);
     return text;
 }

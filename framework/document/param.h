@@ -126,9 +126,10 @@ struct ParamSpec {
     std::optional<ParamValue> identity;  ///< the value that leaves the image as it is
     std::vector<ParamRelation> relations;
     FileKind file_kind = FileKind::image;  ///< file
-    bool warn_if_empty = false;  ///< objects: an empty list, which means all of them, is likely a slip
-    std::string per_metre;       ///< scattering_profile: the parameter that has its mm for each metre
-    bool file_is_data = false;   ///< image, "space": "data": a PNG's numbers as they are stored
+    bool warn_if_empty = false;   ///< objects: an empty list, which means all of them, is likely a slip
+    std::string per_metre;        ///< scattering_profile: the parameter that has its mm for each metre
+    bool file_is_data = false;    ///< image, "space": "data": a PNG's numbers as they are stored
+    bool file_is_linear = false;  ///< image, "filter": "linear": read between its texels
     std::array<double, 2> domain = {0.0, 1.0};  ///< curve: the range of x
     std::vector<ParamSpec> columns;  ///< table: each a scalar or vector with its own default; of another type
                                      ///< that shaders look up by object: what the type has

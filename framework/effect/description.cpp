@@ -90,7 +90,9 @@ std::string texture_text(const TextureSpec& texture) {
     const std::string tile = grid.tile.param.empty() ? std::to_string(grid.tile.number) : grid.tile.param;
     if (grid.kind == GridSpec::Kind::tile) text += ", one texel per " + tile + " px";
     if (grid.kind == GridSpec::Kind::size)
-        text += ", " + std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]);
+        for (const int axis : {0, 1})
+            text += (axis == 0 ? ", " : " x ") +
+                    (grid.formula[axis].empty() ? std::to_string(grid.size[axis]) : grid.formula[axis]);
     if (grid.kind == GridSpec::Kind::scale && grid.scale != 1) text += ", scale " + format_number(grid.scale);
     if (grid.room[0] > 0) text += ", room of " + format_number(grid.room[0]) + " to its right";
     if (grid.room[1] > 0) text += ", room of " + format_number(grid.room[1]) + " below";

@@ -183,6 +183,7 @@ std::string fault_of_fusing(const ShaderContext& shader) {
     if (faults.has_errors()) return "its shader has faults";
     const GlobalNames names(tokens);
     if (names.has_extension) return "its shader has an #extension";
+    if (names.macros.contains("main")) return "its shader has a macro main";
     std::map<std::string_view, int> uses_of_targets;
     for (const Token& token : tokens) {
         if (token.text == "discard") return "its shader may discard a pixel";

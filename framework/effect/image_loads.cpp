@@ -22,6 +22,7 @@ public:
 
     std::vector<ImageLoad> rewrite(int first_unit, int units) {
         std::vector<ImageLoad> loads;
+        if (renames_fetches()) return loads;
         for (const int variable : chosen(std::size_t(std::max(0, units - first_unit)))) {
             loads.push_back(
                 {uses_.variables()[std::size_t(variable)].binding, first_unit + int(loads.size())});
@@ -35,6 +36,15 @@ public:
 
 private:
     const SamplerVariable& variable(int index) const { return uses_.variables()[std::size_t(index)]; }
+
+    /// Behind a macro of the name a fetch is another function's.
+    bool renames_fetches() const {
+        for (std::size_t i = 2; i < tokens_.size(); ++i)
+            if (tokens_[i - 1].text == "define" && tokens_[i - 2].text == "#" &&
+                (tokens_[i].text == "texelFetch" || tokens_[i].text == "textureSize"))
+                return true;
+        return false;
+    }
 
     /// Of which nothing stays a sampler's: all that are linked become images, or none.
     bool is_whole(int index) const { return whole_.contains(uses_.set_of(index)); }

@@ -6,6 +6,7 @@
 
 #include "framework/base/option.h"
 #include "framework/effect/glsl_tokens.h"
+#include "framework/effect/isf/isf_types.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -93,7 +94,7 @@ private:
     void history_validity() {
         for (const auto& [pass, tokens] : tokens_)
             if (has_member(tokens, "frame", "history_valid")) return;
-        diagnostics_.warning({(manifest_.folder / "effect.json").string()},
+        diagnostics_.warning({manifest_.document.string()},
                              "the effect has history, but no shader reads frame.history_valid: after a cut "
                              "it would blend with nothing");
     }
@@ -101,11 +102,13 @@ private:
     /// An effect that accumulates sub-frames needs no warm-up: each frame starts from nothing.
     void warmup() {
         if (manifest_.warmup || manifest_.accumulates_subframes) return;
+        const bool is_isf = is_isf_path(manifest_.document);
         diagnostics_.warning(
-            {(manifest_.folder / "effect.json").string()},
+            {manifest_.document.string()},
             "the effect has history, but declares no warmup: a chunk of a sequence begins "
-            "without the frames before it, and shows a seam (add \"warmup\": "
-            "{\"frames\": N, \"error\": E}" +
+            "without the frames before it, and shows a seam (" +
+                std::string(is_isf ? "import the file and " : "") +
+                "add \"warmup\": {\"frames\": N, \"error\": E}" +
                 advice("; aftershade check LOOK ", Option::warmup, "CAPTURE", " measures them") + ")");
     }
 

@@ -17,8 +17,20 @@ namespace aftershade {
 
 namespace {
 
+/// Of a message without a line, as linkers write them: "function `float f(float)' has static recursion".
+Place named_place(const ShaderSource& source, const std::string& message) {
+    const std::size_t quote = message.find('`'), bracket = message.find('(', quote);
+    if (quote != std::string::npos && bracket != std::string::npos) {
+        const std::size_t before = message.find_last_of("` ", bracket);
+        const std::string name = message.substr(before + 1, bracket - before - 1);
+        for (const Token& token : glsl_tokens(source))
+            if (token.text == name) return token.place();
+    }
+    return source.lines.empty() ? Place{"shader"} : Place{source.lines.front().file.text()};
+}
+
 Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message) {
-    if (message.line < 1 || message.line > int(source.lines.size())) return {"shader"};
+    if (message.line < 1 || message.line > int(source.lines.size())) return named_place(source, message.text);
     const SourceLine& line = source.lines[std::size_t(message.line) - 1];
     return {line.file.text(), line.line, message.column};
 }

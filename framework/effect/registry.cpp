@@ -1,4 +1,5 @@
 #include "framework/effect/registry.h"
+#include "framework/effect/isf/isf_effect.h"
 #include "framework/effect/manifest/manifest_reader.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "framework/base/data_path.h"
+#include "framework/base/text.h"
 #include "framework/document/document.h"
 
 namespace aftershade {
@@ -31,12 +33,19 @@ void EffectRegistry::add_effects_in(const fs::path& folder) {
         const fs::path& effect = at->path();
         const fs::file_type type = fs::status(effect / "effect.json", unreadable).type();
         if (type == fs::file_type::regular) {
-            const std::string id = effect.filename().string();
-            if (!folders_.emplace(id, effect).second) hidden_.emplace_back(id, effect);
+            add(effect.filename().string(), effect);
+        } else if (is_isf_path(effect) && fs::is_regular_file(effect, unreadable)) {
+            const std::string id = effect.stem().string();
+            add(id, effect);
+            isf_names_.emplace(snake_case(id), id);
         } else if (type == fs::file_type::none) unreadable_.emplace(effect, unreadable.message());
     }
     if (failure && failure != std::errc::no_such_file_or_directory)
         unreadable_.emplace(folder, failure.message());
+}
+
+void EffectRegistry::add(const std::string& id, const fs::path& effect) {
+    if (!folders_.emplace(id, effect).second) hidden_.emplace_back(id, effect);
 }
 
 void EffectRegistry::warn_of_unreadable(Diagnostics& diagnostics) const {
@@ -55,8 +64,26 @@ void EffectRegistry::warn_of_hidden(Diagnostics& diagnostics) const {
 }
 
 const fs::path* EffectRegistry::folder(const std::string& id) const {
-    const auto found = folders_.find(id);
+    auto found = folders_.find(id);
+    const auto name = isf_names_.find(id);
+    if (found == folders_.end() && name != isf_names_.end()) found = folders_.find(name->second);
     return found == folders_.end() ? nullptr : &found->second;
+}
+
+std::optional<fs::path> EffectRegistry::place_of(const std::string& id) const {
+    if (const fs::path* known = folder(id)) return *known;
+    std::error_code failure;
+    if (is_isf_path(id) && fs::is_regular_file(id, failure)) return fs::path(id).lexically_normal();
+    return std::nullopt;
+}
+
+bool EffectRegistry::contains(const std::string& id) const {
+    return place_of(id).has_value();
+}
+
+bool EffectRegistry::is_isf(const std::string& id) const {
+    const auto place = place_of(id);
+    return place && is_isf_path(*place);
 }
 
 std::vector<std::string> EffectRegistry::ids() const {
@@ -79,19 +106,26 @@ void add_once(Diagnostics& diagnostics, const Diagnostic& fault) {
 
 }  // namespace
 
-const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& diagnostics) {
-    const auto folder = folders_.find(id);
-    if (folder == folders_.end()) return nullptr;
-    auto manifest = manifests_.find(id);
+std::optional<EffectManifest> EffectRegistry::read(const fs::path& place, IsfSpace space,
+                                                   Diagnostics& diagnostics) {
+    if (is_isf_path(place)) return read_isf_manifest(place, space, glsl_folder_, diagnostics);
+    const auto node = read_document(place / "effect.json", diagnostics);
+    return node ? parse_manifest(*node, place, diagnostics, glsl_folder_) : std::nullopt;
+}
+
+const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& diagnostics, IsfSpace space) {
+    const auto place = place_of(id);
+    if (!place) return nullptr;
+    const Key key(place->string(), space);
+    auto manifest = manifests_.find(key);
     if (manifest == manifests_.end()) {
         const std::size_t before = diagnostics.all().size();
-        const auto node = read_document(folder->second / "effect.json", diagnostics);
-        auto parsed = node ? parse_manifest(*node, folder->second, diagnostics, glsl_folder_) : std::nullopt;
+        auto parsed = read(*place, space, diagnostics);
         if (!parsed)
-            faults_[id].assign(diagnostics.all().begin() + std::ptrdiff_t(before), diagnostics.all().end());
-        manifest = manifests_.emplace(id, std::move(parsed)).first;
+            faults_[key].assign(diagnostics.all().begin() + std::ptrdiff_t(before), diagnostics.all().end());
+        manifest = manifests_.emplace(key, std::move(parsed)).first;
     } else if (!manifest->second) {
-        for (const Diagnostic& fault : faults_[id]) add_once(diagnostics, fault);
+        for (const Diagnostic& fault : faults_[key]) add_once(diagnostics, fault);
     }
     return manifest->second ? &*manifest->second : nullptr;
 }

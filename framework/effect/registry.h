@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/base/diagnostics.h"
+#include "framework/effect/isf/isf_types.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {
@@ -17,7 +18,8 @@ namespace aftershade {
 /// are measured by.
 std::vector<std::filesystem::path> rooms_of_effects(const std::filesystem::path& folder);
 
-/// Folders of effects, searched in order; each effect is a folder <id>/ with an effect.json.
+/// Folders of effects, searched in order; each effect is a folder <id>/ with an effect.json, or an ISF file,
+/// whose id is its name without ".fs" or that in snake_case. The path of an ISF file is an id, too.
 /// [one thread at a time: manifests are read when they are first asked for]
 class EffectRegistry {
 public:
@@ -27,8 +29,8 @@ public:
 
     /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.
     std::vector<std::string> ids() const;
-    bool contains(const std::string& id) const { return folders_.contains(id); }
-    /// The effect's folder; nullptr for an unknown effect.
+    bool contains(const std::string& id) const;
+    /// The effect's folder, or the ISF file itself; nullptr for an unknown effect.
     const std::filesystem::path* folder(const std::string& id) const;
     /// A warning for each folder that could not be read; what it holds is left out.
     void warn_of_unreadable(Diagnostics& diagnostics) const;
@@ -36,17 +38,26 @@ public:
     void warn_of_hidden(Diagnostics& diagnostics) const;
     /// nullptr after faults in the manifest, each of which `diagnostics` gets once, however often it is
     /// sought.
-    const EffectManifest* find(const std::string& id, Diagnostics& diagnostics);
+    const EffectManifest* find(const std::string& id, Diagnostics& diagnostics,
+                               IsfSpace space = IsfSpace::display);
+    /// Whether the effect is an ISF file, which alone has a space.
+    bool is_isf(const std::string& id) const;
 
 private:
     void add_effects_in(const std::filesystem::path& folder);
+    void add(const std::string& id, const std::filesystem::path& effect);
+    std::optional<std::filesystem::path> place_of(const std::string& id) const;
+    std::optional<EffectManifest> read(const std::filesystem::path& place, IsfSpace space,
+                                       Diagnostics& diagnostics);
 
     std::filesystem::path glsl_folder_;
-    std::map<std::string, std::filesystem::path> folders_;               // by id
+    std::map<std::string, std::filesystem::path> folders_;               // by id; of ISF the files
+    std::map<std::string, std::string> isf_names_;                       // ids of ISF files, by snake_case
     std::map<std::filesystem::path, std::string> unreadable_;            // reasons
     std::vector<std::pair<std::string, std::filesystem::path>> hidden_;  // ids and folders
-    std::map<std::string, std::optional<EffectManifest>> manifests_;
-    std::map<std::string, std::vector<Diagnostic>> faults_;  // of the manifests that are nullopt
+    using Key = std::pair<std::string, IsfSpace>;
+    std::map<Key, std::optional<EffectManifest>> manifests_;
+    std::map<Key, std::vector<Diagnostic>> faults_;  // of the manifests that are nullopt
 };
 
 /// Whether the effect is one of those that come with the program; all others are untrusted. Throws as

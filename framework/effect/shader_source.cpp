@@ -83,6 +83,8 @@ private:
 
     void add_file(const fs::path& file, const Place& from) {
         if (!included_.insert(file).second) return;
+        if (const std::string* text = context_.manifest->find_generated(file))
+            return add_text(*text, context_.manifest->document.string(), 1);
         const ShaderTexts::File& read = texts_.of(file);
         if (!read.out_of_bounds.empty()) {
             diagnostics_.error(from, file.string() + " " + read.out_of_bounds);
@@ -98,15 +100,18 @@ private:
                                          (read.fault == "no such file" ? "" : ": " + read.fault));
             return;
         }
+        add_text(read.text, file.string(), 0);
+    }
+
+    /// `number` 0: the lines count from 1; else the number of each, of a text that is no file.
+    void add_text(std::string_view text, const FileName& name, int number) {
         ++depth_;
-        const FileName name = file.string();
-        const std::string_view text = read.text;
         std::size_t at = 0;
-        for (int number = 1; at < text.size() && !is_too_large_; ++number) {
+        for (int line_number = 1; at < text.size() && !is_too_large_; ++line_number) {
             const std::size_t end = std::min(text.find('\n', at), text.size());
             std::string_view line = text.substr(at, end - at);
             if (line.ends_with('\r')) line.remove_suffix(1);
-            add_source_line(line, name, number);
+            add_source_line(line, name, number > 0 ? number : line_number);
             at = end + 1;
         }
         --depth_;
@@ -117,6 +122,11 @@ private:
             add_include(include->is_shared, include->name, {file.text(), number, 1});
             return;
         }
+        if (number == 1 && is_foreign(file.text()) && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+        // Files of other hosts may name the versions that they are for, and extensions that 4.50 has.
+        std::string_view rest = line;
+        if (is_foreign(file.text()) && (is_version_directive(line) || take_directive(rest, "extension")))
+            return add_line("", file, number);
         if (is_version_directive(line)) {
             if (source_.lines.empty() && line == "#version 450 core") has_version_ = true;
             else
@@ -124,6 +134,10 @@ private:
                                    "'#version 450 core' must appear once, as the first line of a shader");
         }
         add_line(line, file, number);
+    }
+
+    bool is_foreign(const std::string& file) const {
+        return (file.ends_with(".fs") || file.ends_with(".vs")) && !source_.lines.empty();
     }
 
     void add_include(bool shared, const std::string& name, const Place& place) {

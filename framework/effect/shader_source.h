@@ -92,7 +92,9 @@ struct PassBindings {
     std::vector<const ParamSpec*> param_samplers;
     int first_native_sampler = 0;  ///< ... and one for each native table
     std::vector<const NativeTableSpec*> native_tables;
-    std::vector<WriteSpec> writes;    ///< target i is writes[i]
+    std::vector<WriteSpec> writes;  ///< target i is writes[i]
+    /// The writes with has_size_of_target(): in the block of sizes behind the reads.
+    std::vector<WriteSpec> sized_writes;
     std::vector<AccessSpec> images;   ///< image unit i is images[i]
     std::vector<AccessSpec> buffers;  ///< storage block i is buffers[i]
     int first_param_buffer = 0;       ///< then one for each table parameter
@@ -100,6 +102,7 @@ struct PassBindings {
     bool has_param_block = false;
     bool has_pass_block = false;
     bool has_native_block = false;
+    bool has_sizes() const { return !reads.empty() || !sized_writes.empty() || has_tile_grid; }
     /// For a pass that lists tiles, or draws over them with a vertex shader of its own, the block of sizes
     /// ends with a vec4 `tile_grid_size`, how many texels of the tile list's grid the pass's target has, or
     /// what the list is of. Other draws over tiles have it in the block of glsl/host/tiles.vert.
@@ -166,6 +169,9 @@ std::vector<WriteSpec> present_writes(const PassSpec& pass, const ParamReader& p
 /// Whether every condition of the pass holds, and at least one of the things that it writes is there.
 bool pass_enabled(const PassSpec& pass, const ParamReader& params,
                   const std::vector<std::string>& present_inputs);
+
+/// Whether the shaders of a pass with this write have `out_<name>_size`: its texture's size is a formula.
+bool has_size_of_target(const EffectManifest& manifest, const WriteSpec& write);
 
 /// Format of an input's or output's texture: its role's channels as floats, or unsigned integers.
 gpu::TextureFormat texture_format_of_role(const std::string& role);

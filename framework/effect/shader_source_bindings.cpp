@@ -68,6 +68,8 @@ PassBindings pass_bindings(const ShaderContext& context) {
     const PassSpec& pass = *context.pass;
     bindings.reads = present_reads(manifest, pass, context.params, context.present_inputs);
     bindings.writes = present_writes(pass, context.params, context.present_inputs);
+    std::ranges::copy_if(bindings.writes, std::back_inserter(bindings.sized_writes),
+                         [&](const WriteSpec& write) { return has_size_of_target(manifest, write); });
     bindings.images = present_uses(pass.images, context.params, context.present_inputs);
     bindings.buffers = pass.buffers;
     for (const ParamSpec& spec : manifest.params) {
@@ -86,6 +88,11 @@ PassBindings pass_bindings(const ShaderContext& context) {
     bindings.has_tile_grid = (!pass.over.empty() && !pass.vertex.empty()) || !pass.lists.empty();
     bindings.has_native_block = has_native_block(manifest);
     return bindings;
+}
+
+bool has_size_of_target(const EffectManifest& manifest, const WriteSpec& write) {
+    const TextureSpec* texture = manifest.find_texture(write.name);
+    return texture && texture->grid.has_formula();
 }
 
 gpu::TextureFormat texture_format_of_role(const std::string& role_name) {

@@ -202,9 +202,11 @@ private:
             if (read.is_pixel)
                 text_ << texel << " = texelFetch(" << kTexelsOf << name << ", ivec2(gl_FragCoord.xy), 0);\n";
         }
-        if ((reads.empty() && !bindings_.has_tile_grid) || !has(kSizeBinding)) return;
+        if (!bindings_.has_sizes() || !has(kSizeBinding)) return;
         text_ << "layout(std140, binding = " << block(kSizeBinding) << ") uniform SizeBlock {\n";
         for (const ReadSpec& read : reads) text_ << "    vec4 " << read.glsl_name() << "_size;\n";
+        for (const WriteSpec& write : bindings_.sized_writes)
+            text_ << "    vec4 out_" << write.name << "_size;\n";
         if (bindings_.has_tile_grid) text_ << "    vec4 tile_grid_size;\n";
         text_ << "};\n";
     }

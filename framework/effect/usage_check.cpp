@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "framework/document/formula.h"
 #include "framework/effect/glsl_names.h"
 #include "framework/effect/manifest/manifest_when.h"
 #include "framework/effect/shader_source.h"
@@ -141,7 +142,10 @@ private:
         std::vector<std::string> targets, meant;
         for (const PassSpec& pass : manifest_.passes) {
             if (pass.folder / pass.shader != file) continue;
-            for (const WriteSpec& write : pass.writes) targets.push_back(std::string(kOut) + write.name);
+            for (const WriteSpec& write : pass.writes) {
+                targets.push_back(std::string(kOut) + write.name);
+                if (has_size_of_target(manifest_, write)) targets.push_back(targets.back() + "_size");
+            }
             if (pass.infers_writes) meant = all_targets();
         }
         meant.insert(meant.end(), targets.begin(), targets.end());
@@ -224,7 +228,14 @@ private:
     std::set<std::string> named_by_manifest() const {
         std::set<std::string> names;
         const auto add = [&](const CountSpec& count) { names.insert(count.param); };
-        for (const TextureSpec& texture : manifest_.textures) add(texture.grid.tile);
+        for (const TextureSpec& texture : manifest_.textures) {
+            add(texture.grid.tile);
+            for (const std::string& formula : texture.grid.formula)
+                (void)evaluate_formula(formula, [&](std::string_view name) {
+                    names.emplace(name);
+                    return std::optional(1.0);
+                });
+        }
         for (const BufferSpec& buffer : manifest_.buffers) {
             add(buffer.count);
             if (buffer.grid) add(buffer.grid->tile);

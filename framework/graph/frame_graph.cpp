@@ -75,8 +75,10 @@ bool FrameGraph::overwrites(const Pass& pass, const Target& target) const {
     const Texture& texture = textures_[std::size_t(target.texture.texture)];
     const bool all_levels = texture.desc.mips == 1 || texture.options.auto_mips || target.level < 0;
     const bool all_layers = texture.desc.layers == 1 || target.layer < 0;
-    const bool all_texels = pass.kind == PassKind::clear || pass.kind == PassKind::copy ||
-                            (pass.kind == PassKind::draw && pass.blend == gpu::Blend::none);
+    const bool all_texels =
+        pass.kind == PassKind::clear || pass.kind == PassKind::copy ||
+        ((pass.kind == PassKind::draw || (pass.kind == PassKind::instances && pass.instances.covers)) &&
+         pass.blend == gpu::Blend::none);
     return all_levels && all_layers && all_texels;
 }
 

@@ -82,6 +82,7 @@ struct Instances {
     gpu::Primitive primitive = gpu::Primitive::quads;
     int count = 0;
     std::optional<BufferHandle> indirect{};
+    bool covers = false;  ///< the targets as a whole, which nothing need have filled
 };
 
 /// Work groups of a compute pass; or as many as the buffer says (DispatchIndirectCommand).

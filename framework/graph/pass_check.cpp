@@ -210,7 +210,7 @@ private:
             if (gpu::is_integer(texture.desc.format))
                 fail(fmt::format("blends onto '{}', which holds integers", texture.name));
             check_filled(texture, target.level, target.layer, "blends onto");
-        } else if (pass_.kind == PassKind::instances && !texture.options.partial) {
+        } else if (pass_.kind == PassKind::instances && !pass_.instances.covers && !texture.options.partial) {
             check_filled(texture, target.level, target.layer, "draws over parts of");
         }
     }

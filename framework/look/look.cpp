@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/base/path_bounds.h"
+#include "framework/base/text.h"
 #include "framework/document/grammar_reader.h"
 #include "framework/look/look_grammar.h"
 
@@ -201,7 +202,10 @@ private:
         step.effect = reader.text("effect");
         // An ill-formed id too: two steps with it do not share a name.
         const Node* name = node.find("name");
-        step.name = scope.prefix + (name && name->is_string() ? name->string : step.effect);
+        step.name =
+            scope.prefix + (name && name->is_string() ? name->string : default_step_name(step.effect));
+        if (reader.has("space")) step.space = reader.choice<IsfSpace>("space");
+        step.space_place = reader.place("space");
         step.enabled = reader.boolean("enabled") && scope.enabled;
         if (reader.has("preset")) step.preset = reader.text("preset");
         if (const Node* params = reader.find("params")) step.params = params->members;
@@ -314,6 +318,11 @@ std::string with_json_numbers(const std::string& text) {
 }
 
 }  // namespace
+
+std::string default_step_name(const std::string& effect) {
+    if (effect.empty() || is_snake_case(effect)) return effect;
+    return snake_case(is_isf_path(effect) ? fs::path(effect).stem().string() : effect);
+}
 
 Node parse_command_value(const std::string& text, const Place& place) {
     Diagnostics not_json;

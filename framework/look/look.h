@@ -12,6 +12,7 @@
 #include "framework/base/diagnostics.h"
 #include "framework/document/document.h"
 #include "framework/document/param.h"
+#include "framework/effect/isf/isf_types.h"
 
 namespace aftershade {
 
@@ -40,8 +41,9 @@ struct MaskSpec {
 };
 
 struct LookStep {
-    std::string name;  ///< the effect's id unless the look says otherwise
-    std::string effect;
+    std::string name;               ///< the effect's id unless the look says otherwise
+    std::string effect;             ///< an id, or the path of an ISF file, from `folder`
+    std::optional<IsfSpace> space;  ///< of an ISF file
     bool enabled = true;
     std::optional<std::string> preset;
     std::vector<Member> params;  ///< values are read against the effect's manifest; variables are put in
@@ -51,6 +53,7 @@ struct LookStep {
     std::filesystem::path folder;  ///< of the look that the step stands in: its files are named from there
     Place place;                   ///< of the step
     Place effect_place;
+    Place space_place;
     Place preset_place;
 };
 
@@ -73,6 +76,9 @@ using LookVariables = std::map<std::string, Node>;
 
 /// A value of the command line: JSON where it reads as JSON, else a bare word. All of it stands at `place`.
 Node parse_command_value(const std::string& text, const Place& place);
+
+/// What a step without a `name` is called: its effect's id, or the name of an ISF file in snake_case.
+std::string default_step_name(const std::string& effect);
 
 /// Reads the form of the document and of every look that it uses ({"use": "lens.json"}); whether effects
 /// exist and values fit is bind_pipeline's to say.

@@ -30,30 +30,31 @@ bool is_native_source(const fs::path& file) {
 }
 
 /// A shader file and all that it includes, each once.
-void gather_shader(const fs::path& file, const fs::path& glsl_folder, std::set<fs::path>& files,
-                   int depth = 0) {
-    if (depth >= kMaxIncludeDepth || !files.insert(file.lexically_normal()).second) return;
+void gather_shader(const EffectManifest& manifest, const fs::path& file, const fs::path& glsl_folder,
+                   std::set<fs::path>& files, int depth = 0) {
+    const std::string* generated = manifest.find_generated(file);
+    if (depth >= kMaxIncludeDepth || (!generated && !files.insert(file.lexically_normal()).second)) return;
     std::string fault;
-    std::istringstream lines(read_regular_file(file, kMaxShaderFileBytes, fault));
+    std::istringstream lines(generated ? *generated : read_regular_file(file, kMaxShaderFileBytes, fault));
     if (!fault.empty()) throw Error(ErrorKind::usage, file.string() + ": " + fault);
     for (std::string line; std::getline(lines, line);) {
         const auto include = parse_include(line);
         if (!include || include->name == "pass" || include->name == "predicate") continue;
-        gather_shader((include->is_shared ? glsl_folder : file.parent_path()) / include->name, glsl_folder,
-                      files, depth + 1);
+        gather_shader(manifest, (include->is_shared ? glsl_folder : file.parent_path()) / include->name,
+                      glsl_folder, files, depth + 1);
     }
 }
 
 std::set<fs::path> files_of(const EffectManifest& manifest, const fs::path& glsl_folder) {
-    std::set<fs::path> files{manifest.folder / "effect.json"};
+    std::set<fs::path> files{manifest.document};
     for (const ModuleSpec& part : manifest.modules) files.insert(part.folder / "module.json");
     for (const PassSpec& pass : manifest.passes) {
         for (const std::string& shader : {pass.shader, pass.vertex})
-            if (!shader.empty()) gather_shader(pass.folder / shader, glsl_folder, files);
+            if (!shader.empty()) gather_shader(manifest, pass.folder / shader, glsl_folder, files);
         if (!pass.lists.empty())
-            gather_shader(shader_path(pass, ShaderFile::main, glsl_folder), glsl_folder, files);
+            gather_shader(manifest, shader_path(pass, ShaderFile::main, glsl_folder), glsl_folder, files);
         if (!pass.over.empty())
-            gather_shader(shader_path(pass, ShaderFile::vertex, glsl_folder), glsl_folder, files);
+            gather_shader(manifest, shader_path(pass, ShaderFile::vertex, glsl_folder), glsl_folder, files);
     }
     if (manifest.native)
         for (const auto& entry : fs::directory_iterator(manifest.folder))

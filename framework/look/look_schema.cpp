@@ -98,8 +98,11 @@ grammar::Block step_of(const EffectManifest& effect) {
     std::vector<std::string> presets;
     for (const PresetSpec& preset : effect.presets) presets.push_back(preset.name);
     // An effect without presets takes none.
-    if (presets.empty())
-        std::erase_if(block.keys, [](const grammar::Key& key) { return key.name == "preset"; });
+    const auto take_out = [&](const std::string& name) {
+        std::erase_if(block.keys, [&](const grammar::Key& key) { return key.name == name; });
+    };
+    if (presets.empty()) take_out("preset");
+    if (!is_isf_path(effect.document)) take_out("space");
     for (grammar::Key& key : block.keys) {
         if (key.name == "effect")
             key = grammar::required("effect", grammar::choice({effect.id}), effect.summary);
@@ -111,11 +114,28 @@ grammar::Block step_of(const EffectManifest& effect) {
     return block;
 }
 
+/// A step of an ISF file that no manifest is known of.
+grammar::Block step_of_isf() {
+    grammar::Block block = look_step_block();
+    block.definition = "isf_file";
+    block.doc = "An ISF file, by its path.";
+    std::erase_if(block.keys, [](const grammar::Key& key) { return key.name == "preset"; });
+    for (grammar::Key& key : block.keys)
+        if (key.name == "effect")
+            key = grammar::required(
+                "effect",
+                grammar::text(
+                    {.pattern = {R"(\.fs$)", [](const std::string& path) { return is_isf_path(path); }}}),
+                "Path from the look's folder.");
+    return block;
+}
+
 }  // namespace
 
 std::string look_schema(const std::vector<const EffectManifest*>& effects) {
     std::vector<grammar::Form> steps;
     for (const EffectManifest* effect : effects) steps.push_back(grammar::object(step_of(*effect)));
+    steps.push_back(grammar::object(step_of_isf()));
     grammar::Block look = look_block();
     for (grammar::Key& key : look.keys)
         if (key.name == "steps")

@@ -236,6 +236,10 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
             text += spelled(Option::layer) + " " + list_of_names(found.layers) +
                     (found.layers.size() == 1 ? " has it; " : " have it; ");
     }
+    if (kind_of_role(role) == RoleKind::display)
+        text +=
+            "a step before it that makes display, a view transform, gives it; of an ISF file \"space\": "
+            "\"linear\" takes color; ";
     if (const auto half = header.half_there.find(role); half != header.half_there.end())
         text += half->second + "; ";
     if (kind_of_role(role) == RoleKind::motion)

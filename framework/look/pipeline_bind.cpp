@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/base/option.h"
+#include "framework/base/path_bounds.h"
 #include "framework/document/units.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
@@ -131,7 +132,9 @@ private:
     /// nullopt where the step has no manifest to be held against.
     std::optional<PipelineStep> bind(const LookStep& look_step) {
         if (look_step.effect.empty()) return std::nullopt;
-        if (!effects_.contains(look_step.effect)) {
+        const std::string effect = effect_of(look_step);
+        if (effect.empty()) return std::nullopt;
+        if (!effects_.contains(effect)) {
             const auto ids = effects_.ids();
             diagnostics_.error(
                 look_step.effect_place,
@@ -142,8 +145,11 @@ private:
         }
         PipelineStep step;
         step.name = look_step.name;
-        step.manifest = effects_.find(look_step.effect, diagnostics_);
+        step.manifest = effects_.find(effect, diagnostics_, look_step.space.value_or(IsfSpace::display));
         if (!step.manifest) return std::nullopt;
+        if (look_step.space && !effects_.is_isf(effect))
+            diagnostics_.error(look_step.space_place,
+                               "'" + look_step.effect + "' is not an ISF file, which alone has a 'space'");
         step.is_foreign = !is_shipped(*step.manifest);
         apply_preset(look_step, step);
         for (const Member& member : look_step.params)
@@ -155,6 +161,27 @@ private:
             find_before(step, pipeline_.steps.size(),
                         look_step.mix ? look_step.mix->place : look_step.mask->place);
         return step;
+    }
+
+    /// An id, or the path of an ISF file from here; "" after a fault.
+    std::string effect_of(const LookStep& look_step) {
+        if (!is_isf_path(look_step.effect)) return look_step.effect;
+        const std::filesystem::path path = look_step.folder / look_step.effect;
+        std::error_code failure;
+        if (const std::string reason = FileRule::why_not(path); !reason.empty()) {
+            diagnostics_.error(look_step.effect_place, "'" + look_step.effect + "' " + reason);
+            return "";
+        }
+        if (std::filesystem::is_regular_file(path, failure)) return path.string();
+        std::vector<std::string> files;
+        for (const auto& entry : std::filesystem::directory_iterator(path.parent_path(), failure))
+            if (is_isf_path(entry.path()))
+                files.push_back(
+                    (std::filesystem::path(look_step.effect).parent_path() / entry.path().filename())
+                        .string());
+        diagnostics_.error(look_step.effect_place,
+                           "no file '" + path.string() + "'" + did_you_mean(look_step.effect, files));
+        return "";
     }
 
     void set_mix(PipelineStep& step, const Node& value) {

@@ -8,7 +8,10 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
+#include "framework/document/formula.h"
 #include "framework/document/param_type.h"
+#include "framework/document/units.h"
 #include "framework/graph/rehearsal.h"
 #include "framework/image/role.h"
 #include "framework/render/step_build.h"
@@ -56,13 +59,37 @@ std::vector<std::string> copy_defines(gpu::TextureFormat format) {
     return {};
 }
 
+namespace {
+
+int side_of(const GridSpec& grid, int axis, const ParamReader& params, int width, int height) {
+    const std::string& formula = grid.formula[axis];
+    if (formula.empty()) return grid.size[axis];
+    const FormulaResult side = evaluate_formula(formula, [&](std::string_view name) -> std::optional<double> {
+        if (is_grid_side(name)) return name == "width" ? width : height;
+        const ParamValue& value = params.get(std::string(name));
+        const auto* number = std::get_if<double>(&value);
+        return number ? *number : double(std::get<std::int64_t>(value));
+    });
+    // A NaN is no size either.
+    if (!(side.value <= kMaxSide))
+        throw Error(ErrorKind::effect,
+                    "the size \"" + formula + "\" is " + format_number(side.value) +
+                        " texels for a frame of " + std::to_string(width) + " x " + std::to_string(height) +
+                        "; the limit is " + std::to_string(kMaxSide) + " (write a smaller one" +
+                        advice(", or render with a smaller ", Option::scale, "", "") + ")");
+    return std::max(1, int(std::max(side.value, 1.0)));
+}
+
+}  // namespace
+
 std::pair<int, int> grid_size(const GridSpec& grid, const ParamReader& params, int width, int height) {
     const auto with_room = [&](int side, int axis) {
         const int room = int(std::ceil(side * grid.room[axis]));
         return room == 0 ? side : divided_up(side, kRoomTexels) * kRoomTexels + room;
     };
     switch (grid.kind) {
-        case GridSpec::Kind::size: return {grid.size[0], grid.size[1]};
+        case GridSpec::Kind::size:
+            return {side_of(grid, 0, params, width, height), side_of(grid, 1, params, width, height)};
         case GridSpec::Kind::tile: {
             const int tile = std::max(1, count_value(grid.tile, params));
             return {divided_up(with_room(width, 0), tile), divided_up(with_room(height, 1), tile)};

@@ -62,11 +62,16 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
         const auto size = size_of(texture.desc, level);
         sizes.add(std::span<const float>(size));
     }
+    for (const WriteSpec& write : bindings.sized_writes) {
+        const auto& texture = graph.textures()[std::size_t(build.textures.at(write.name).texture)];
+        const auto size = size_of(texture.desc, level_in_turn(write.level, turn));
+        sizes.add(std::span<const float>(size));
+    }
     if (bindings.has_tile_grid) sizes.add(std::span<const float>(tile_grid));
-    if (!pass.reads.empty() || bindings.has_tile_grid)
-        pass.uniforms.push_back({kSizeBinding, sizes.finish()});
+    if (bindings.has_sizes()) pass.uniforms.push_back({kSizeBinding, sizes.finish()});
     for (const ParamSpec* param : bindings.param_samplers)
-        pass.reads.push_back({build.param_textures.at(param->name), int(pass.reads.size())});
+        pass.reads.push_back({build.param_textures.at(param->name), int(pass.reads.size()),
+                              param->file_is_linear ? gpu::Filter::linear : gpu::Filter::nearest});
     for (const NativeTableSpec* table : bindings.native_tables)
         pass.reads.push_back({build.native_tables.at(table->name), int(pass.reads.size())});
 }
@@ -275,6 +280,7 @@ void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph:
         pass.instances.primitive = instances.primitive == InstanceSpec::Primitive::points
                                        ? gpu::Primitive::points
                                        : gpu::Primitive::quads;
+        pass.instances.covers = instances.covers;
         if (!instances.indirect.empty()) pass.instances.indirect = build.buffers.at(instances.indirect);
         else
             pass.instances.count =

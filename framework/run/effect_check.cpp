@@ -203,8 +203,7 @@ void add_fault(const EffectManifest& manifest, const Setting& setting, const Dia
     if (!fault.place.file.empty())
         return diagnostics.error(fault.place, fault.message + " (with " + setting.name + ")");
     for (const std::string_view line : split(fault.message, '\n'))
-        diagnostics.error({(manifest.folder / "effect.json").string()},
-                          "with " + setting.name + ": " + std::string(line));
+        diagnostics.error({manifest.document.string()}, "with " + setting.name + ": " + std::string(line));
 }
 
 }  // namespace

@@ -77,6 +77,10 @@ std::string stamp_of_folders(const std::vector<fs::path>& folders) {
     for (const fs::path& folder : folders)
         for (const auto& effect : fs::directory_iterator(folder, failure))
             if (effect.is_directory(failure)) add_files(effect.path());
+            else if (is_isf_path(effect.path())) {
+                add_files(folder);  // with their vertex shaders
+                break;
+            }
     std::string stamp;
     for (const auto& [path, state] : states) stamp += path + "\n" + state + "\n";
     return stamp;

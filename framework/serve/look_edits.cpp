@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/error.h"
+#include "framework/look/look.h"
 #include "framework/serve/json_spans.h"
 
 namespace aftershade::serve {
@@ -240,13 +241,16 @@ void add_step(std::string& text, const SpanNode& steps, const Json& edit) {
         const Json step = Json::parse(item.span.of(text), nullptr, false, true);
         if (!step.is_object()) continue;
         const Json& name = step.contains("name") ? step["name"] : step.value("effect", Json());
-        if (name.is_string()) names.push_back(name.get<std::string>());
+        if (!name.is_string()) continue;
+        names.push_back(name.get<std::string>());
+        if (!step.contains("name")) names.back() = default_step_name(names.back());
     }
-    std::string name = effect;
+    const std::string first = default_step_name(effect);
+    std::string name = first;
     for (int n = 2; std::ranges::find(names, name) != names.end(); ++n)
-        name = effect + "_" + std::to_string(n);
+        name = first + "_" + std::to_string(n);
     Json step = {{"effect", effect}};
-    if (name != effect) step["name"] = name;
+    if (name != first) step["name"] = name;
     insert_part(text, list_of(steps), at, text_of(step));
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/base/error.h"
+#include "framework/look/look.h"
 #include "framework/render/frame_drive.h"
 #include "framework/serve/bound_text.h"
 
@@ -63,7 +64,8 @@ Json written_step(const Json& written, std::size_t index) {
         return written.contains(key) && written[key].is_string() ? written[key] : Json();
     };
     Json step = {{"index", index}, {"effect", text_of("effect")}, {"name", text_of("name")}};
-    if (step["name"].is_null()) step["name"] = step["effect"];
+    if (step["name"].is_null() && step["effect"].is_string())
+        step["name"] = default_step_name(step["effect"].get<std::string>());
     if (written.contains("use")) step["use"] = written["use"];
     const bool has_switch = written.contains("enabled") && written["enabled"].is_boolean();
     step["enabled"] = has_switch ? written["enabled"].get<bool>() : true;
@@ -99,11 +101,13 @@ Json steps_json(const std::string& text, const BoundText* bound, EffectRegistry&
         Json step = written_step(written, list.size());
         const std::string effect = step["effect"].is_string() ? step["effect"].get<std::string>() : "";
         Diagnostics ignored;  // bind() lists them
-        const EffectManifest* manifest = effects.contains(effect) ? effects.find(effect, ignored) : nullptr;
         const PipelineStep* found = nullptr;
         if (bound && step["name"].is_string())
             for (const PipelineStep& one : bound->pipeline.steps)
                 if (one.name == step["name"].get<std::string>()) found = &one;
+        // The path of an ISF file begins at the look's folder, which is not here.
+        const EffectManifest* manifest = effects.contains(effect) ? effects.find(effect, ignored) : nullptr;
+        if (found && is_isf_path(found->manifest->document)) manifest = found->manifest;
         const Json params = written.value("params", Json::object());
         if (manifest)
             for (const ParamSpec& spec : manifest->params) {

@@ -34,7 +34,7 @@ TEST(FileParam, OfAManifestStaysInItsFolder) {
 TEST(FileParam, SaysWhatIsWrongWithItsDeclaration) {
     EXPECT_EQ(test::spec_faults(R"({"type": "file", "unit": "m", "min": 0, "space": "srgb", "default": "",
 "doc": ".", "kind": "lut"})"),
-              (Lines{"doc.json:1:50: error: only a file of kind image has a 'space'",
+              (Lines{"doc.json:1:50: error: only a file of kind image has a 'space' or a 'filter'",
                      "doc.json:1:18: " + test::only_numbers_have("unit"),
                      "doc.json:1:31: " + test::only_numbers_have("min")}));
     EXPECT_EQ(test::spec_faults(R"({"type": "file", "default": "", "doc": "."})"),

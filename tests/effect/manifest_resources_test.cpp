@@ -105,6 +105,12 @@ TEST(ManifestResources, SayWhatIsWrongWithATexture) {
     const std::vector<std::pair<std::string, Lines>> broken = {
         {R"("format": "r8", "size": [0, 4])", {"5: 'size' must be from 1 to 16384, not 0"}},
         {R"("format": "r8", "size": [4, 16385])", {"5: 'size' must be from 1 to 16384, not 16385"}},
+        {R"j("format": "r8", "size": ["widht / 2", 4])j",
+         {"5: 'size': in \"widht / 2\", at character 1: 'widht' is not a number that it can use (a formula "
+          "has "
+          "numbers, + - * /, brackets, functions, 'width' and 'height' of the working grid and parameters "
+          "that are "
+          "one number)"}},
         {R"("format": "r8", "size": 4)", {"5: 'size' must be an array, not an integer"}},
         {R"("format": "r8", "size": [4, 4], "tile": 8)",
          {"5: only one of 'scale', 'tile' and 'size' may be given"}},

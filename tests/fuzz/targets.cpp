@@ -26,6 +26,7 @@
 #include "framework/document/document.h"
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/image_loads.h"
+#include "framework/effect/isf/isf_effect.h"
 #include "framework/effect/manifest/manifest_reader.h"
 #include "framework/effect/native/native_wire.h"
 #include "framework/effect/registry.h"
@@ -284,6 +285,20 @@ void glsl(std::string_view bytes) {
     });
 }
 
+void isf(std::string_view bytes) {
+    for (const IsfSpace space : {IsfSpace::display, IsfSpace::linear}) {
+        Diagnostics faults;
+        refused_or_read([&] {
+            const auto read = read_isf_manifest(file_of("isf/in.fs", bytes), space, kSources / "glsl", faults);
+            if (!read && !faults.has_errors()) broken("an ISF file is read, or has faults");
+            if (read) check_declared_used(*read, kSources / "glsl", faults);
+        });
+        for (const Diagnostic& fault : faults.all())
+            if (fault.place.file.empty() || fault.message.empty())
+                broken("a fault of an ISF file has a place and a message");
+    }
+}
+
 void frame_range(std::string_view bytes) {
     const auto frames = parse_frame_range(bytes);
     if (frames && parse_frame_range(format_frame_range(*frames)) != frames && !frames->empty())
@@ -426,6 +441,7 @@ constexpr Target kTargets[] = {
     {"profile", "profile.json", profile},
     {"scattering", "scattering.json", scattering},
     {"glsl", "in.frag", glsl},
+    {"isf", "in.fs", isf},
     {"frame_range", "in.txt", frame_range},
     {"history", "in.history", history},
     {"journal", "journal.jsonl", journal},

@@ -15,16 +15,21 @@ void declare(grammar::Block& declaration, const grammar::Block&) {
         grammar::required("kind", grammar::choice({"image", "lut"}), "A picture, or a table of colours."));
     declaration.keys.push_back(grammar::optional("space", grammar::choice({"srgb", "data"}),
                                                  "Encoding of a PNG's values.", "\"srgb\""));
-    declaration.rules.push_back(grammar::when({.key = "kind",
-                                               .value = "\"lut\"",
-                                               .absent = {"space"},
-                                               .fault = "only a file of kind image has a 'space'"}));
+    declaration.keys.push_back(grammar::optional("filter", grammar::choice({"nearest", "linear"}),
+                                                 "Filter of `texture()` between texels.", "\"nearest\""));
+    declaration.rules.push_back(
+        grammar::when({.key = "kind",
+                       .value = "\"lut\"",
+                       .absent = {"space", "filter"},
+                       .fault = "only a file of kind image has a 'space' or a 'filter'"}));
 }
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
     if (reader.node.find("kind")->string == "lut") spec.file_kind = FileKind::lut;
     const Node* space = reader.node.find("space");
     spec.file_is_data = space && space->string == "data";
+    const Node* filter = reader.node.find("filter");
+    spec.file_is_linear = filter && filter->string == "linear";
 }
 
 /// A manifest's own files lie in its effect's folder.

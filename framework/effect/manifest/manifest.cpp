@@ -21,6 +21,12 @@ std::string InputSpec::image_role() const {
     return layer < 0 ? role : layer_role(layer, role);
 }
 
+const std::string* EffectManifest::find_generated(const std::filesystem::path& file) const {
+    const auto found =
+        file.parent_path() == folder ? generated.find(file.filename().string()) : generated.end();
+    return found == generated.end() ? nullptr : &found->second;
+}
+
 const InputSpec* EffectManifest::find_input(const std::string& name) const {
     return find_named(inputs, name);
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "framework/base/diagnostics.h"
@@ -72,10 +73,19 @@ struct GridSpec {
     /// With `scale`: further texels to the right and below, in its width and height.
     double room[2] = {0, 0};
     CountSpec tile;        ///< one texel per tile of this many px a side, rounded up
-    int size[2] = {0, 0};  ///< fixed, in texels
+    int size[2] = {0, 0};  ///< fixed, in texels; of each side that has no formula
+    /// Of a side: over "width" and "height" of the working grid and numbers of parameters. Its integer part,
+    /// at least 1.
+    std::string formula[2] = {};
+    bool has_formula() const { return !formula[0].empty() || !formula[1].empty(); }
     bool has_room() const { return room[0] > 0 || room[1] > 0; }
     bool operator==(const GridSpec&) const = default;
 };
+
+/// What the formula of a size calls a side of the working grid.
+inline bool is_grid_side(std::string_view name) {
+    return name == "width" || name == "height";
+}
 
 /// A texture between passes; every one can be tapped.
 struct TextureSpec {
@@ -174,6 +184,7 @@ struct InstanceSpec {
     std::optional<GridSpec> grid;  ///< `count` per texel of this grid
     CountSpec count;
     std::string indirect;  ///< buffer of {vertices, instances, first, base}; "" for the count
+    bool covers = false;   ///< the target as a whole, so that nothing has to fill it before
 };
 
 /// How many work groups a compute pass has.
@@ -335,7 +346,12 @@ struct EffectManifest {
     std::vector<PresetSpec> presets;
     std::vector<TelemetrySpec> telemetry;
     std::filesystem::path folder;
+    std::filesystem::path document;  ///< what declares it: folder / "effect.json", or a file of another host
+    /// Shaders of the host's making that stand for files of `folder`, by name.
+    std::map<std::string, std::string> generated;
 
+    /// Of a shader's file; nullptr: it is on the disk.
+    const std::string* find_generated(const std::filesystem::path& file) const;
     const InputSpec* find_input(const std::string& name) const;
     const OutputSpec* find_output(const std::string& name) const;
     const ParamSpec* find_param(const std::string& name) const;

@@ -91,7 +91,10 @@ Block instances_block() {
                  optional("per", per_form(), "Count instances per texel of this grid."),
                  optional(
                      "indirect", text({.min_length = 1, .type = "name of a buffer"}),
-                     "Alternative to `count` and `per`: a buffer with `indirect` that holds the number.")},
+                     "Alternative to `count` and `per`: a buffer with `indirect` that holds the number."),
+                 optional("covers", grammar::boolean(),
+                          "The instances cover the whole target, which nothing has to fill before.",
+                          "false")},
         .rules = {
             grammar::at_least_one_of({"count", "per", "indirect"},
                                      "'instances' have no 'count', 'per' or 'indirect' buffer"),

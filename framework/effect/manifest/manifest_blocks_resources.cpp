@@ -37,6 +37,12 @@ Form mips_form() {
         {grammar::with_fault(grammar::constant("\"auto\""), kFault), integer(1, kMaxMips)}, kFault);
 }
 
+constexpr const char* kSizeFault = "'size' holds 2 integers or formulas";
+
+Form side_form() {
+    return grammar::by_kind({integer(1, kMaxSide), text({.min_length = 1, .type = "formula"})}, kSizeFault);
+}
+
 Block make_texture_block() {
     return {
         .name = "texture",
@@ -58,10 +64,11 @@ Block make_texture_block() {
              optional("tile", count_form(kTileCount), "One texel per tile; the tile's side in px."),
              optional(
                  "size",
-                 grammar::shown_as(grammar::list(integer(1, kMaxSide),
-                                                 {.min = 2, .max = 2, .fault = "'size' holds 2 integers"}),
+                 grammar::shown_as(grammar::list(side_form(), {.min = 2, .max = 2, .fault = kSizeFault}),
                                    "[width, height], up to " + std::to_string(kMaxSide)),
-                 "Fixed size in texels, independent of the working grid."),
+                 "Size in texels, independent of the working grid; or formulas of it: "
+                 "`[\"floor(width / 4)\", \"max(height / 4, 1)\"]`, also of parameters' numbers. The shader "
+                 "of a pass that writes such a texture has `out_<name>_size`."),
              optional("layers", integer(1, kMaxLayers),
                       "Number of layers; more than one make an array texture.", "1"),
              optional("mips", mips_form(),

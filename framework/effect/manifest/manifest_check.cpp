@@ -66,6 +66,18 @@ bool is_word(const std::string& name) {
     return kWords.contains(name) || is_vector_or_matrix(name);
 }
 
+}  // namespace
+
+bool is_glsl_word(const std::string& name) {
+    return is_word(name) || name.starts_with("gl_") || name.find("__") != std::string::npos;
+}
+
+bool hides_glsl(const std::string& name) {
+    return kTaken.contains(name);
+}
+
+namespace {
+
 class NameChecker {
 public:
     NameChecker(const EffectManifest& manifest, Diagnostics& diagnostics)
@@ -212,7 +224,7 @@ void check_files(const EffectManifest& manifest, Diagnostics& diagnostics) {
         if (file.empty()) return;
         const std::filesystem::path path = manifest.folder / file;
         if (const std::string why = out_of_bounds(path, manifest.folder); !why.empty())
-            diagnostics.error({(manifest.folder / "effect.json").string()},
+            diagnostics.error({manifest.document.string()},
                               place + spec.name + ": " + path.string() + " " + why);
     };
     for (const ParamSpec& spec : manifest.params) {

@@ -12,6 +12,10 @@ void check_manifest(const EffectManifest& manifest, Diagnostics& diagnostics);
 /// That no name is a word of GLSL or of the host, and that no two things have one name in GLSL.
 void check_names(const EffectManifest& manifest, Diagnostics& diagnostics);
 
+/// Whether no GLSL identifier may have the name, and whether a global one would hide what shaders need.
+bool is_glsl_word(const std::string& name);
+bool hides_glsl(const std::string& name);
+
 /// Each pass by itself, and in order: who reads what before it is written.
 void check_passes(const EffectManifest& manifest, Diagnostics& diagnostics);
 

@@ -68,6 +68,7 @@ private:
     CountSpec count(const Reader& reader, const std::string& key, const CountLimits& limits);
     void count_by_param(const Node& node, const std::string& key, const CountLimits& limits);
     GridSpec grid(const Reader& reader, bool may_be_fixed);
+    void check_formula(const Node& node);
     std::optional<GridSpec> per(const Reader& reader);
     void texture(const Reader::Named& declared);
     void mips(const Reader& reader, TextureSpec& texture);

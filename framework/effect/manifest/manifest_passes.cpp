@@ -74,6 +74,7 @@ InstanceSpec ManifestParser::instances(const Reader& reader) {
     instances.grid = per(reader);
     instances.count = count(reader, "count", kInstanceCount);
     instances.indirect = reader.text("indirect");
+    instances.covers = reader.boolean("covers");
     return instances;
 }
 

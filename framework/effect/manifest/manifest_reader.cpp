@@ -19,7 +19,8 @@ void ManifestParser::identity(const Reader& document) {
     const Node* id = document.node().find("id");
     manifest_.id = document.text("id");
     const std::string folder = manifest_.folder.filename().string();
-    if (id && id->is_string() && id->string != folder)
+    const bool has_folder = manifest_.document == manifest_.folder / "effect.json";
+    if (has_folder && id && id->is_string() && id->string != folder)
         fault(id->place, "the id '" + id->string + "' is not the name of its folder, '" + folder + "'");
     manifest_.version = document.text("version");
     manifest_.summary = document.text("summary");
@@ -105,7 +106,8 @@ void ManifestParser::preset(const Member& member) {
 }
 
 std::optional<EffectManifest> parse_manifest(const Node& written, const fs::path& folder,
-                                             Diagnostics& diagnostics, const fs::path& glsl_folder) {
+                                             Diagnostics& diagnostics, const fs::path& glsl_folder,
+                                             std::optional<ForeignEffect> foreign) {
     const int errors_before = diagnostics.error_count();
     const Node node = without_groups(written, diagnostics);
     if (diagnostics.error_count() > errors_before) return std::nullopt;
@@ -113,6 +115,8 @@ std::optional<EffectManifest> parse_manifest(const Node& written, const fs::path
     if (!node.is_object()) return std::nullopt;
     EffectManifest manifest;
     manifest.folder = folder;
+    manifest.document = foreign ? std::move(foreign->document) : folder / "effect.json";
+    if (foreign) manifest.generated = std::move(foreign->shaders);
     const grammar::Reader document(node, effect_block());
     ManifestParser parser(manifest, diagnostics);
     parser.identity(document);

@@ -2,13 +2,21 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "framework/base/diagnostics.h"
 #include "framework/document/document.h"
 #include "framework/effect/manifest/manifest.h"
 
 namespace aftershade {
+
+/// Of an effect that the host has translated from another program's file.
+struct ForeignEffect {
+    std::filesystem::path document;              ///< that file, in the effect's folder
+    std::map<std::string, std::string> shaders;  ///< EffectManifest::generated
+};
 
 /// Parses and checks everything that can be known without GL: names, roles, ranges, that each pass reads only
 /// what an earlier one may have written, that every output and texture is written, that shader files exist.
@@ -20,6 +28,7 @@ namespace aftershade {
 /// throw, as data_path().
 std::optional<EffectManifest> parse_manifest(const Node& node, const std::filesystem::path& folder,
                                              Diagnostics& diagnostics,
-                                             const std::filesystem::path& glsl_folder = {});
+                                             const std::filesystem::path& glsl_folder = {},
+                                             std::optional<ForeignEffect> foreign = std::nullopt);
 
 }  // namespace aftershade

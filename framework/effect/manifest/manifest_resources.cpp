@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "framework/document/formula.h"
 #include "framework/document/units.h"
 #include "framework/effect/manifest/manifest_parser.h"
 #include "framework/effect/manifest/manifest_when.h"
@@ -47,6 +48,22 @@ void ManifestParser::count_by_param(const Node& node, const std::string& key, co
                               std::to_string(limits.most));
 }
 
+void ManifestParser::check_formula(const Node& node) {
+    const auto value_of = [&](std::string_view name) -> std::optional<double> {
+        const ParamSpec* spec = manifest_.find_param(std::string(name));
+        if (is_grid_side(name) || faulty_params_.contains(std::string(name)) ||
+            (spec && is_scalar_type(spec->type)))
+            return 1;
+        return std::nullopt;
+    };
+    const FormulaResult result = evaluate_formula(node.string, value_of);
+    if (result.fault.empty()) return;
+    fault(node.place, "'size': in \"" + node.string + "\", at character " + std::to_string(result.at + 1) +
+                          ": " + result.fault +
+                          " (a formula has numbers, + - * /, brackets, functions, 'width' and "
+                          "'height' of the working grid and parameters that are one number)");
+}
+
 GridSpec ManifestParser::grid(const Reader& reader, bool may_be_fixed) {
     GridSpec grid;
     if (reader.has("scale")) grid.scale = reader.number("scale");
@@ -62,6 +79,12 @@ GridSpec ManifestParser::grid(const Reader& reader, bool may_be_fixed) {
         grid.kind = GridSpec::Kind::size;
         const std::vector<int> sides = integers_of(reader, "size", 2);
         std::copy(sides.begin(), sides.end(), grid.size);
+        const std::vector<Node>& items = reader.find("size")->items;
+        for (std::size_t axis = 0; axis < 2 && axis < items.size(); ++axis)
+            if (items[axis].is_string()) {
+                grid.formula[axis] = items[axis].string;
+                check_formula(items[axis]);
+            }
     }
     return grid;
 }

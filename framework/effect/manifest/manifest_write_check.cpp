@@ -126,7 +126,9 @@ private:
     /// Instances and tiles leave the rest of a target as it was, which must be something.
     void check_base(const WriteSpec& write) {
         const TextureSpec* texture = manifest_.find_texture(write.name);
-        if (!pass_->instances || state_.filled.contains(write.name) || (texture && texture->partial)) return;
+        if (!pass_->instances || pass_->instances->covers || state_.filled.contains(write.name) ||
+            (texture && texture->partial))
+            return;
         state_.fault(write.place,
                      "draws over parts of '" + write.name +
                          "' before anything has filled the rest: copy an input to it (a pass of kind "
@@ -177,7 +179,8 @@ void PassState::fault(const Place& place, const std::string& text) {
 }
 
 bool PassState::is_there(const std::string& file) const {
-    return std::filesystem::is_regular_file(pass->folder / file);
+    return manifest.find_generated(pass->folder / file) ||
+           std::filesystem::is_regular_file(pass->folder / file);
 }
 
 void check_place(PassState& state, const std::string& name, const std::string& key, int value,

@@ -1,0 +1,5 @@
+#undef main
+void ISF_MAIN() {
+    isf_main();
+    ISF_OUT = ISF_RESULT(isf_data[0]);
+}

@@ -1,0 +1,8 @@
+#include <isf/names.glsl>
+#define varying in
+#define gl_FragCoord isf_coord()
+#define isf_FragNormCoord isf_norm_coord()
+#define vv_FragNormCoord isf_norm_coord()
+#define gl_FragData isf_data
+#define gl_FragColor isf_data[0]
+#define dFdy(value) (-dFdy(value))

@@ -1,0 +1,25 @@
+// GLSL 1.20 and ISF's own names, for the file behind them.
+#define PASSINDEX ISF_PASS
+#define IMG_PIXEL(image, at) isf_sample_pixel(image, at)
+#define IMG_NORM_PIXEL(image, at) isf_sample(image, at)
+#define IMG_THIS_PIXEL(image) isf_sample(image, isf_FragNormCoord)
+#define IMG_THIS_NORM_PIXEL(image) isf_sample(image, isf_FragNormCoord)
+#define IMG_SIZE(image) isf_size(image)
+#define sampler2DRect sampler2D
+#define texture isf_sample
+#define texture2D isf_sample
+#define texture2DRect isf_sample_pixel
+#define texture2DLod isf_sample_level
+#define texture2DLodEXT isf_sample_level
+#define textureLod isf_sample_level
+#define texture2DProj isf_sample_part
+#define textureProj isf_sample_part
+#define texelFetch isf_fetch
+// The host may have renamed main(), to draw around it.
+#ifdef main
+#undef main
+#define ISF_MAIN aftershade_author_main
+#else
+#define ISF_MAIN main
+#endif
+#define main isf_main

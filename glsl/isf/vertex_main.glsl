@@ -1,0 +1,5 @@
+#undef main
+void ISF_MAIN() {
+    isf_vertShaderInit();
+    isf_main();
+}
