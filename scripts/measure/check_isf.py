@@ -17,6 +17,7 @@ import tempfile
 from typing import Any
 
 import numpy
+from PIL import Image
 
 from measure.exr import read_exr, write_exr
 from measure.pages import Page, table
@@ -155,6 +156,20 @@ def all_shares(mine: dict[str, Found], theirs: dict[str, Found], names: list[str
     return [s for each in found for s in each] if all(found) else [0.0] * len(FRAMES) * len(names)
 
 
+def write_sheet(files: list[pathlib.Path], ours: dict[str, dict[str, Found]]) -> None:
+    """Frame 10 of each file with its default values, at half the size, over grey where it is transparent."""
+    columns = 10
+    rows = -(-len(files) // columns)
+    sheet = numpy.full((rows * HEIGHT // 2, columns * WIDTH // 2, 3), 255.0)
+    for i, file in enumerate(files):
+        image = ours[file.name]["defaults"]["pictures"][FRAMES[-1]].astype(float)
+        alpha = image[..., 3:] / 255
+        small = (image[..., :3] * alpha + 128 * (1 - alpha)).reshape(HEIGHT // 2, 2, WIDTH // 2, 2, 3).mean(axis=(1, 3))
+        y, x = i // columns * HEIGHT // 2, i % columns * WIDTH // 2
+        sheet[y:y + HEIGHT // 2, x:x + WIDTH // 2] = small
+    Image.fromarray(sheet.round().astype(numpy.uint8)).save(ROOT / "docs/images/isf_filters.jpg", quality=75)
+
+
 def fetch_modules() -> None:
     if not (MODULES / "node_modules/interactive-shader-format").exists():
         MODULES.mkdir(parents=True, exist_ok=True)
@@ -230,6 +245,7 @@ def main() -> None:
         print(*row, sep="  ")
     if os.environ.get("ONLY"):
         return
+    write_sheet(rendered, ours)
     page.fill({"figures": figures,
                "refused": table(["file", "reason"], refused + [[name, "that renderer: " + reason] for name, reason in absent]),
                "differences": table(["file", "defaults, frame 1", "frame 10", "second set, 1", "10", "least, put right", "reason"], rows)})
