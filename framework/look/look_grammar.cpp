@@ -81,7 +81,7 @@ const Block& look_step_block() {
                      "Id of the effect, or the path of an ISF file from the look's folder "
                      "([ISF](isf.md)); a second step of the same effect needs a `name`."),
             optional("space", grammar::choice({"display", "linear"}),
-                     "Of an ISF file: what it works on, encoded `display` or scene-linear `color`.",
+                     "The image that an ISF file works on: encoded `display` or scene-linear `color`.",
                      "\"display\""),
             optional("name", step_name(), "Name of the step; default: the effect's id."),
             optional("enabled", grammar::boolean(), "false skips the step, but still checks it.", "true"),
