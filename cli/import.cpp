@@ -52,7 +52,7 @@ Verb add_import(CLI::App& app) {
         ->type_name("FOLDER")
         ->required();
     isf->add_option("--space", options->space,
-                    "What the effect works on: encoded display or scene-linear color")
+                    "The image that the effect works on: encoded display or scene-linear color")
         ->check(CLI::IsMember({"display", "linear"}))
         ->capture_default_str();
     return [options] { return import_effect(*options); };

@@ -34,7 +34,8 @@ def both_biases() -> Blocks:
 
 PARTS = {
     "moving": lambda: {
-        "moving": table(["", "samples", "default", "fixed", "`guiding` off", "least gain on fixed", "on `guiding` off", "step", "taa, mean: dB lost", "taa, most: dB lost"], moving()),
+        "moving": table(["", "samples", "default", "fixed", "`guiding` off", "least gain on fixed", "on `guiding` off", "step",
+                         "taa, mean: dB lost", "taa, most: dB lost"], moving()),
         "first": table(["", "`sss_separable`", "frame 1", "frame 16"], first_frames())},
     "light": light,
     "count": lambda: {"count": table(["controller", "samples, mean", "adaptive", "fixed", "ratio"], at_equal_count())},

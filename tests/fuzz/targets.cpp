@@ -289,7 +289,8 @@ void isf(std::string_view bytes) {
     for (const IsfSpace space : {IsfSpace::display, IsfSpace::linear}) {
         Diagnostics faults;
         refused_or_read([&] {
-            const auto read = read_isf_manifest(file_of("isf/in.fs", bytes), space, kSources / "glsl", faults);
+            const auto read =
+                read_isf_manifest(file_of("isf/in.fs", bytes), space, kSources / "glsl", faults);
             if (!read && !faults.has_errors()) broken("an ISF file is read, or has faults");
             if (read) check_declared_used(*read, kSources / "glsl", faults);
         });
