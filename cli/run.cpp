@@ -189,6 +189,7 @@ ExitCode run_here(const RunArguments& options, CheckedRun& run, const CaptureRea
     if (run.outputs.stream_format) {
         const std::string input = ffmpeg_input(reader, run.sequence, run.settings, run.outputs);
         if (options.stream_output() != kStandardOutput) {
+            prepare_output_folder(options.stream_output());
             run.outputs.stream = &video.emplace(options.stream_output(), input).frames();
         } else {
             if (options.progress != "none" && options.progress != "json")

@@ -171,10 +171,9 @@ void add_run_options(CLI::App& app, RunArguments& options) {
                    "picture, which data-centre GPUs run faster; auto: what is faster on this GPU "
                    "(default: $AFTERSHADE_DRAW_WITH, else auto)")
         ->check(CLI::IsMember({"auto", "fragment", "compute"}));
-    app.add_option(
-           "--read-ahead", options.read_ahead,
-           "Frames to read, and frames to write, while one is rendered (1 to 64; default: a quarter of "
-           "the cores, at most 8, as far as memory has room)")
+    app.add_option("--read-ahead", options.read_ahead,
+                   "Frames to read, and frames to write, while one is rendered (default: a quarter of "
+                   "the cores, at most 8, as far as memory has room)")
         ->check(CLI::Range(1, 64));
     add_plugin_options(app, options.plugins);
 }

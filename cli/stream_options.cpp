@@ -8,6 +8,7 @@
 #include "cli/run_arguments.h"
 #include "cli/video_output.h"
 #include "framework/capture/capture_window.h"
+#include "framework/capture/frame_range.h"
 #include "framework/file/frame_stream.h"
 #include "framework/run/frame_run.h"
 
@@ -41,6 +42,8 @@ void check_stream_options(const RunArguments& arguments, Diagnostics& diagnostic
         diagnostics.error(place, to_standard_output
                                      ? "standard output takes one stream of frames; write -o - once"
                                      : "a run makes one video; make the other in another run");
+    if (!to_standard_output && FramePattern(output).has_frame())
+        diagnostics.error(place, "a video is one file; leave the frame's number out of its name");
     if (to_standard_output && stream.format.empty())
         diagnostics.error(place,
                           "add the format of the frames: --format " + list_of_names(stream_format_names()));

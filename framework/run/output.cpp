@@ -126,8 +126,9 @@ std::vector<OutputName> all_names(const OutputOptions& options) {
     return names;
 }
 
+/// Of the kinds that only a command of one's own makes.
 bool is_film(const std::string& type) {
-    return type == ".mp4" || type == ".mov" || type == ".mkv" || type == ".webm" || type == ".avi";
+    return type == ".avi" || type == ".mxf" || type == ".mpg" || type == ".m4v" || type == ".gif";
 }
 
 }  // namespace

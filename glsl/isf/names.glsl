@@ -2,8 +2,6 @@
 #define PASSINDEX ISF_PASS
 #define IMG_PIXEL(image, at) isf_sample_pixel(image, at)
 #define IMG_NORM_PIXEL(image, at) isf_sample(image, at)
-#define IMG_THIS_PIXEL(image) isf_sample(image, isf_FragNormCoord)
-#define IMG_THIS_NORM_PIXEL(image) isf_sample(image, isf_FragNormCoord)
 #define IMG_SIZE(image) isf_size(image)
 #define sampler2DRect sampler2D
 #define texture isf_sample
@@ -15,6 +13,17 @@
 #define texture2DProj isf_sample_part
 #define textureProj isf_sample_part
 #define texelFetch isf_fetch
+#define texture2DProjLod isf_sample_part_level
+#define texture2DRectProj(image, at) isf_sample_pixel(image, (at).xy / (at).z)
+#define texture2DGrad isf_sample_slope
+#define texture2DGradARB isf_sample_slope
+#define textureProjLod isf_sample_part_level
+#define textureProjGrad isf_sample_part_slope
+#define textureGrad isf_sample_slope
+#define textureOffset isf_sample_beside
+#define textureLodOffset isf_sample_level_beside
+#define texelFetchOffset isf_fetch_beside
+#define textureGather isf_gather
 // The host may have renamed main(), to draw around it.
 #ifdef main
 #undef main

@@ -34,7 +34,7 @@ def both_biases() -> Blocks:
 
 PARTS = {
     "moving": lambda: {
-        "moving": table(["", "samples", "default", "fixed", "`guiding` off", "least gain on fixed", "on `guiding` off", "step",
+        "moving": table(["", "samples", "default", "fixed", "`guiding` off", "least gain on fixed", "on `guiding` off", "jump",
                          "taa, mean: dB lost", "taa, most: dB lost"], moving()),
         "first": table(["", "`sss_separable`", "frame 1", "frame 16"], first_frames())},
     "light": light,

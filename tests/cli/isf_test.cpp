@@ -81,12 +81,33 @@ TEST_F(IsfFiles, SampleFromTheLowerLeftCornerInEachOfTheirWays) {
          {"IMG_NORM_PIXEL(inputImage, isf_FragNormCoord + 1.0 / RENDERSIZE)",
           "IMG_PIXEL(inputImage, gl_FragCoord.xy + 1.0)",
           "texture2D(inputImage, isf_FragNormCoord + vec2(1) / IMG_SIZE(inputImage))",
-          "texelFetch(inputImage, ivec2(gl_FragCoord.xy) + 1, 0)"}) {
+          "texelFetch(inputImage, ivec2(gl_FragCoord.xy) + 1, 0)",
+          "texelFetchOffset(inputImage, ivec2(gl_FragCoord.xy), 0, ivec2(1))",
+          "textureOffset(inputImage, isf_FragNormCoord, ivec2(1))",
+          "textureGrad(inputImage, isf_FragNormCoord + 1.0 / RENDERSIZE, vec2(0.0), vec2(0.0))",
+          "texture2DProj(inputImage, vec4(2.0 * isf_FragNormCoord + 2.0 / RENDERSIZE, 0.0, 2.0))",
+          "vec4(textureGather(inputImage, isf_FragNormCoord + 0.5 / RENDERSIZE, 0).y,"
+          " textureGather(inputImage, isf_FragNormCoord + 0.5 / RENDERSIZE, 1).y, 0.0, 1.0)"}) {
         write_filter("shift.fs", kImage, "void main() { gl_FragColor = " + read + "; }\n");
         const Image image = display(step("ramp.fs") + "," + step("shift.fs"));
         EXPECT_NEAR(image.at(3, 5, 0), 4.5 / kWidth, 1e-6) << read;
         EXPECT_NEAR(image.at(3, 5, 1), 3.5 / kHeight, 1e-6) << read;
     }
+}
+
+TEST_F(IsfFiles, HaveTheBitsOfTheWholeFrameInARegion) {
+    write_filter("ramp.fs", "", kRamp);
+    const Image whole = display(step("ramp.fs"));
+    run(step("ramp.fs"), {"in_0001.exr", "-o", "out.exr", "--output-roles", "display", "--pixel-type",
+                          "float", "--region", "5,2,6,4"});
+    const Image region = read(folder_ / "out.exr", "display.");
+    for (int c = 0; c < 4; ++c) EXPECT_EQ(region.at(1, 1, c), whole.at(6, 3, c)) << c;
+}
+
+TEST_F(IsfFiles, SeeADefaultThatIsNoneOfTheirValues) {
+    write_filter("odd.fs", R"("INPUTS": [{"NAME": "l", "TYPE": "long", "VALUES": [3, 7], "DEFAULT": 5}])",
+                 "void main() { gl_FragColor = vec4(float(l) / 10.0); }\n");
+    EXPECT_FLOAT_EQ(display(step("odd.fs")).at(2, 2, 0), 0.5f);
 }
 
 TEST_F(IsfFiles, UndoAndRedoThePremultiplicationOfLinearLight) {

@@ -24,7 +24,7 @@ TEST_F(Slip, APatternWithAStarIsWrittenWithHashes) {
 
 TEST_F(Slip, AFilmIsMadeByFfmpeg) {
     write_frames(1, 1);
-    expect_hint({"run", "nothing.json", "in_0001.exr", "-o", "film.mp4"}, "-o - --print-ffmpeg");
+    expect_hint({"run", "nothing.json", "in_0001.exr", "-o", "film.avi"}, "-o - --print-ffmpeg");
 }
 
 TEST_F(Slip, AnEffectsPathIsAnOptionOfItsOwn) {

@@ -183,9 +183,9 @@ protected:
 
 TEST_F(Video, GoesThroughFfmpegAndAppearsOnceItIsWhole) {
     write_ffmpeg("cat > \"$out\"; echo \"$@\" > words");
-    EXPECT_EQ(film("my film.mp4", 0).out, "my film.mp4\n");
+    EXPECT_EQ(film("new/my film.mp4", 0).out, "new/my film.mp4\n");
     const std::string raw = run({"nothing.json", "in_####.exr", "-o", "-", "--format", "rgb24"}, 0).out;
-    EXPECT_EQ(read_text(folder_ / "my film.mp4"), raw);
+    EXPECT_EQ(read_text(folder_ / "new/my film.mp4"), raw);
     EXPECT_NE(read_text(folder_ / "words").find("-video_size 64x36 -framerate 24 -i - "), std::string::npos)
         << read_text(folder_ / "words");
 }
@@ -210,6 +210,7 @@ TEST_F(Video, IsLeftAsItWasWhereFfmpegOrTheRunFails) {
 TEST_F(Video, SaysWhatItNeedsAndWhatDoesNotGoWithIt) {
     EXPECT_NE(film("film.mp4", int(ExitCode::output), "/nowhere").err.find("needs ffmpeg on PATH"),
               std::string::npos);
+    EXPECT_NE(film("film_####.mp4", int(ExitCode::usage)).err.find("a video is one file"), std::string::npos);
     const std::string faults = film("film.mp4", int(ExitCode::usage), "/nowhere",
                                     {"-o", "other.webm", "--jobs", "2", "--resume", "--format", "rgb24"})
                                    .err;

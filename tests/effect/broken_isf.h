@@ -59,6 +59,12 @@ inline std::vector<BrokenIsf> broken_isf_files() {
          "not a name of GLSL"},
         {"a name of GLSL's own", isf_input("\"NAME\": \"gl_x\", \"TYPE\": \"float\""), 3,
          "not a name of GLSL"},
+        {"a name of ISF's own", isf_input("\"NAME\": \"PASSINDEX\", \"TYPE\": \"float\""), 3,
+         "a name of ISF itself"},
+        {"two passes into one persistent target",
+         isf_passes(
+             "{\"TARGET\": \"a\", \"PERSISTENT\": true},\n{\"TARGET\": \"a\", \"PERSISTENT\": true}, {}"),
+         5, "two passes draw the PERSISTENT TARGET 'a'"},
         {"two inputs of one name",
          isf_file(
              "\"INPUTS\": [{\"NAME\": \"a\", \"TYPE\": \"float\"},\n{\"NAME\": \"a\", \"TYPE\": \"bool\"}]"),

@@ -116,6 +116,12 @@ private:
                       "', which is not a name of GLSL: letters, 0-9 and _, not beginning with a digit");
             return false;
         }
+        static const std::set<std::string> kOfIsf = {"TIME",       "TIMEDELTA", "DATE",
+                                                     "FRAMEINDEX", "PASSINDEX", "RENDERSIZE"};
+        if (kOfIsf.contains(name) || name.starts_with("isf_") || name.starts_with("IMG_")) {
+            fault(place, thing + " is called '" + name + "', which is a name of ISF itself; choose another");
+            return false;
+        }
         const auto [known, is_new] = names_.emplace(name, thing);
         if (!is_new)
             fault(place, thing + " has the name '" + name + "', which " + known->second + " has already");
@@ -144,6 +150,12 @@ private:
         if (!claim(input.name, "an input", node.find("NAME")->place)) return;
         if (input.type == Type::choice) choices(node, input);
         input.default_value = value(node, "DEFAULT", input);
+        // Hosts give the shader a DEFAULT that none of the VALUES is.
+        if (input.default_value && !input.values.empty() &&
+            std::ranges::find(input.values, int(input.default_value->number)) == input.values.end()) {
+            input.values.clear();
+            input.labels.clear();
+        }
         input.identity = value(node, "IDENTITY", input);
         if (input.type != Type::choice || input.values.empty()) {
             input.min = value(node, "MIN", input);
@@ -248,6 +260,9 @@ private:
         sides(node, pass);
         const auto same = [&](const IsfPass& other) { return other.target == pass.target; };
         const bool is_known = std::ranges::any_of(file_.passes, same);
+        if (!pass.target.empty() && is_known && pass.is_persistent)
+            fault(node.find("TARGET")->place, "two passes draw the PERSISTENT TARGET '" + pass.target +
+                                                  "', which one pass may; give this one a TARGET of its own");
         if (!pass.target.empty() && !is_known) claim(pass.target, "a TARGET", node.find("TARGET")->place);
         file_.passes.push_back(std::move(pass));
     }

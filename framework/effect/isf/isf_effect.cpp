@@ -48,6 +48,8 @@ public:
         if (!file_.credit.empty()) source += ", " + file_.credit;
         add_member(manifest, "sources", list_node(file_.place, {text(source)}));
         passes();  // says which textures there are
+        // RENDERSIZE and places in the picture are those of all of it.
+        add_member(manifest, "reach", text("all"));
         add_member(manifest, "inputs", inputs());
         add_member(manifest, "outputs",
                    object_node(file_.place, {{output_, object({{"role", text(output_)}})}}));
