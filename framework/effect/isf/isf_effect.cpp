@@ -242,6 +242,9 @@ private:
             reads.push_back(text(nothing_));
             add_member(defines, "ISF_NOTHING", text(nothing_));
         }
+        const auto is_sized = [&](const IsfPass& other) { return has_size(other); };
+        if (!lacks_any && std::ranges::none_of(file_.passes, is_sized))
+            add_member(defines, "ISF_ALIKE", text("1"));
         const std::string target = pass.target.empty() ? output_ : names_.of(pass.target);
         add_output(defines, target, pass.target.empty(), !pass.target.empty() && has_size(pass));
         if (std::ranges::any_of(file_.passes, &IsfPass::is_persistent))
