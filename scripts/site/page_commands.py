@@ -41,7 +41,14 @@ echo '{ "aftershade": 1, "frames": "1-200", "size": [16, 9], "camera": { "positi
 # (page, beginning of a command): what it needs besides.
 BEFORE = {
     ("docs/compare.md", "aftershade compare golden.exr out.exr --json"): "cp golden.exr out.exr\n",
-    ("docs/batch.md", "aftershade run look.json wheel -o - "): "command -v ffmpeg >/dev/null || ffmpeg() { cat >/dev/null; }\n",
+    # A machine without ffmpeg gets one that keeps the frames as they come.
+    ("docs/batch.md", "aftershade run look.json wheel -o film.mp4"):
+        "command -v ffmpeg >/dev/null || { printf '#!/bin/sh\\nfor file; do :; done\\ncat >\"${file#file:}\"\\n' >\"$HOME/bin/ffmpeg\"\n"
+        '    chmod +x "$HOME/bin/ffmpeg"; }\n',
+    ("docs/batch.md", "aftershade run look.json wheel -o - "): "rm -f film.mp4\n",
+    ("docs/isf.md", "aftershade import isf"):
+        "mkdir -p filters\n"
+        "printf '/*{\"CREDIT\": \"me\"}*/\\nvoid main() { gl_FragColor = vec4(1.0); }\\n' >'filters/Edge Blur.fs'\n",
     ("docs/batch.md", "aftershade inspect out_####.exr"): "cp film/out_*.exr .\n",
     ("docs/batch.md", "aftershade inspect 'out_####.png'"): "aftershade run look.json wheel -o 'out_####.png' --progress none\n",
     ("docs/batch.md", "aftershade run look.json wheel -o film/out_####.exr --chunk auto "):
