@@ -37,7 +37,7 @@ std::string line_of_git(const fs::path& folder, const std::vector<std::string>& 
     }
 }
 
-/// Of the `part`-th case.
+/// The options of the `part`-th case.
 gpu::GlChoice gl_of(const GoldenOptions& options, int part) {
     GlOptions gl = options.gl;
     const char* environment = std::getenv("AFTERSHADE_BACKEND");

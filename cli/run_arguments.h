@@ -63,7 +63,7 @@ struct RunArguments {
 
     /// Whether frames go to standard output.
     bool streams() const { return !stream_output().empty(); }
-    /// Of the outputs, "-" or a video; "" where frames go into files alone.
+    /// The output that is "-" or a video; "" where frames go into files alone.
     std::string stream_output() const;
     /// The option that makes each run render every frame, current or not; "" for none.
     std::string needs_every_frame() const;

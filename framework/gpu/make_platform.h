@@ -7,8 +7,8 @@
 
 namespace aftershade::gpu {
 
-/// Of one backend. Throws Error(ErrorKind::gl) whose message is the reason alone, and Error(ErrorKind::usage)
-/// where no device has the name of the choice.
+/// Opens one backend. Throws Error(ErrorKind::gl) whose message is the reason alone, and
+/// Error(ErrorKind::usage) where no device has the name of the choice.
 std::unique_ptr<Platform> make_platform(const GlChoice& choice);
 
 }  // namespace aftershade::gpu

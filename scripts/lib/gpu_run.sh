@@ -44,6 +44,8 @@ fi
 export AFTERSHADE_DATA=$here/tree AFTERSHADE_CACHE=$work/cache AFTERSHADE_BACKEND=$backend
 aftershade() { "$here/bin/aftershade" "$@"; }
 
+# 1 where a golden or a test failed, or a time is missing.
+status=0
 members=()
 member() { members+=("\"$1\": $2"); }
 seconds() { awk "BEGIN { printf \"%.2f\", $(date +%s.%N) - $1 }"; }
@@ -65,6 +67,7 @@ if [[ " $parts " == *" goldens "* ]]; then
     code=0
     cp -r "$here/tree" "$work/tree"
     aftershade golden run "$work/tree/tests/golden" --backend "$backend" >/dev/null 2>"$work/golden.txt" || code=$?
+    [ $code = 0 ] || status=1
     grep -v '^ *[0-9]*/.* Passed ' "$work/golden.txt" || true
     member goldens "{\"exit\": $code, \"summary\": \"$(grep ' passed, ' "$work/golden.txt" | tail -n 1 | tr -d '"')\"}"
 fi
@@ -87,7 +90,8 @@ if [[ " $parts " == *" tests "* ]] && [ "$limit" != 0 ]; then
             passed=$(grep -c '^\[       OK' "$work/$test.txt" || true)
             failed=$(grep '^\[  FAILED  \].*ms)$' "$work/$test.txt" | sed 's/^\[  FAILED  \] //; s/ (.*//; s/,.*//; s/["\\]//g; s/.*/"&"/' | paste -sd , || true)
             whole=true
-            [ $code != 124 ] || whole=false
+            if [ $code = 124 ]; then whole=false; elif [ $code != 0 ]; then status=1; fi
+            [ -z "$failed" ] || status=1
             echo "$test: $passed passed, failed: ${failed:-none}$([ $whole = true ] || echo ", stopped after $limit s")"
             results+=("\"$test\": {\"passed\": $passed, \"failed\": [$failed], \"whole\": $whole}")
         done
@@ -143,6 +147,7 @@ if [[ " $parts " == *" times "* ]]; then
             [ $look != view_transform ] || roles=(--output-roles display)
             ms=$(passes_ms "$work/$look.json" "$work/toys_$size/capture.json" "${roles[@]}")
             echo "$size $look $ms"
+            [ "$ms" != null ] || status=1
             times+=("\"$look\": $ms")
         done
         sized+=("\"$size\": {$(IFS=,; echo "${times[*]}")}")
@@ -167,6 +172,7 @@ if [[ " $parts " == *" times "* ]]; then
             ms=$(passes_ms "$work/$look.json" "$work/${scene}_still/capture.json" "${picture[@]}")
             db=$(psnr "$work/out_0016.exr" "$work/reference.exr")
             echo "$scene $look $ms $db dB"
+            [ "$ms" != null ] && [ -n "$db" ] || status=1
             looks+=("\"$look\": {\"ms\": $ms, \"db\": ${db:-null}}")
         done
         scattered+=("\"$scene\": {$(IFS=,; echo "${looks[*]}")}")
@@ -183,3 +189,4 @@ fi
 member seconds "$(seconds "$began")"
 (IFS=,; echo "{${members[*]}}") >"$out"
 echo "$out: $(seconds "$began") s in all"
+exit $status

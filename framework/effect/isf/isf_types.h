@@ -30,7 +30,7 @@ struct IsfPass {
     std::string target;  ///< "": the picture
     bool is_persistent = false;
     bool is_float = false;
-    /// Of its sides, with $WIDTH, $HEIGHT and $<input>; "": those of the picture.
+    /// Formulas of its sides, with $WIDTH, $HEIGHT and $<input>; "": those of the picture.
     std::string side[2];
     Place side_place[2];
     std::string doc;

@@ -74,8 +74,8 @@ struct GridSpec {
     double room[2] = {0, 0};
     CountSpec tile;        ///< one texel per tile of this many px a side, rounded up
     int size[2] = {0, 0};  ///< fixed, in texels; of each side that has no formula
-    /// Of a side: over "width" and "height" of the working grid and numbers of parameters. Its integer part,
-    /// at least 1.
+    /// Formula of a side: over "width" and "height" of the working grid and numbers of parameters. Its
+    /// integer part, at least 1.
     std::string formula[2] = {};
     bool has_formula() const { return !formula[0].empty() || !formula[1].empty(); }
     bool has_room() const { return room[0] > 0 || room[1] > 0; }
@@ -350,7 +350,7 @@ struct EffectManifest {
     /// Shaders of the host's making that stand for files of `folder`, by name.
     std::map<std::string, std::string> generated;
 
-    /// Of a shader's file; nullptr: it is on the disk.
+    /// Text of a shader's file; nullptr: the file is on the disk.
     const std::string* find_generated(const std::filesystem::path& file) const;
     const InputSpec* find_input(const std::string& name) const;
     const OutputSpec* find_output(const std::string& name) const;

@@ -12,7 +12,7 @@
 
 namespace aftershade {
 
-/// Of an effect that the host has translated from another program's file.
+/// The files of an effect that the host has translated from another program's file.
 struct ForeignEffect {
     std::filesystem::path document;              ///< that file, in the effect's folder
     std::map<std::string, std::string> shaders;  ///< EffectManifest::generated
