@@ -17,8 +17,8 @@ namespace aftershade {
 
 namespace {
 
-/// The fault of a message without a line, as linkers write them: "function `float f(float)' has static
-/// recursion".
+/// The place that a message without a line names, as linkers write them: "function `float f(float)' has
+/// static recursion".
 Place named_place(const ShaderSource& source, const std::string& message) {
     const std::size_t quote = message.find('`'), bracket = message.find('(', quote);
     if (quote != std::string::npos && bracket != std::string::npos) {

@@ -7,7 +7,7 @@
 
 namespace aftershade::gpu {
 
-/// Opens one backend. Throws Error(ErrorKind::gl) whose message is the reason alone, and
+/// The platform of one backend. Throws Error(ErrorKind::gl) whose message is the reason alone, and
 /// Error(ErrorKind::usage) where no device has the name of the choice.
 std::unique_ptr<Platform> make_platform(const GlChoice& choice);
 
