@@ -2,11 +2,11 @@
 // and are of this frame's light, so that only what they are wrong by lags behind light that moves.
 #include <scattering/facet.glsl>
 #include <scattering/gathered.glsl>
+#include "blur_frames.glsl"
 #include "past.glsl"
 
-// Frames of samples that the blurs stand for where there is no history. With 9 the first frame is nearer than the blurs on all
-// three stills of docs/quality-sss-adaptive.md.
-const float kFramesOfBlur = 9.0;
+// Beyond this a count of frames decides nothing.
+const float kMostFrames = 4096.0;
 
 // The most that the blurs leave over, as a part of the light that there is: on the stills of docs/quality-sss-adaptive.md it is
 // more in 2 of 10,000 pixels.
@@ -15,7 +15,7 @@ const float kMostLeftOver = 1.0;
 // What a pixel that scatters comes to after this frame.
 struct Guided {
     Gathered sums;
-    float frames;   // how many they are of
+    float frames;   // how many they are of, and kFramesOfBlur
     vec2 residual;  // residual_at() of the pixel
 };
 
@@ -41,10 +41,10 @@ Guided guided_light(ivec2 p, Gathered now, ivec2 q, bool was_seen) {
     float frames = was_seen ? texelFetch(guided_prev, q, 0).a : 0.0;
     Gathered then = frames > 0.0 ? carried(p, q, now) : Gathered(unfilled(texelFetch(blurred, p, 0).rgb, now), now.share, now.whole);
     // Frames count alike until the newest would count less than its weight.
-    float weight = max(1.0 / (max(frames, kFramesOfBlur) + 1.0), param.guiding_weight);
+    float frames_now = min(max(frames, kFramesOfBlur) + 1.0, kMostFrames), weight = max(1.0 / frames_now, param.guiding_weight);
     Gathered sums = Gathered(mix(then.light, now.light, weight), mix(then.share, now.share, weight), mix(then.whole, now.whole, weight));
     vec2 residual = frames > 0.0 ? vec2(q) + 0.5 + residual_at(q) - past_place() : vec2(0.0);
-    return Guided(sums, 1.0 / weight, (1.0 - weight) * residual);
+    return Guided(sums, frames_now, (1.0 - weight) * residual);
 }
 
 void keep_average(Guided now) {

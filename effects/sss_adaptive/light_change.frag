@@ -1,6 +1,7 @@
 #version 450 core
 #include <pass>
 #include "past.glsl"
+#include "blur_frames.glsl"
 
 #if GUIDING
 const float kMostChange = 64.0;
@@ -23,7 +24,7 @@ bool blurred_before(vec2 place, uint key, out vec3 light) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy), q;
-    out_light_change = vec4(1.0);
+    out_light_change = vec4(1.0, 1.0, 1.0, 0.0);
 #ifdef HAS_LIGHT_CHANGE_BEFORE
     out_light_change = texelFetch(light_change_before, p, 0);
 #endif
@@ -31,6 +32,7 @@ void main() {
     uint key = texelFetch(facet, p, 0).r;
     vec3 before;
     if (key == 0u || !past_pixel(q) || !blurred_before(past_place(), key, before)) return;
-    out_light_change = vec4(clamp(texelFetch(blurred, p, 0).rgb / max(before, 1e-20), 1.0 / kMostChange, kMostChange), 1.0);
+    vec3 change = clamp(texelFetch(blurred, p, 0).rgb / max(before, 1e-20), 1.0 / kMostChange, kMostChange);
+    out_light_change = vec4(change, texelFetch(guided, p, 0).a - kFramesOfBlur);
 #endif
 }

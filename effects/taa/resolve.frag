@@ -142,8 +142,13 @@ vec4 held(vec4 history, Box box, float least_weight, out float part) {
 // history is there to smooth. Highlights move where scattered light hardly does: on a face beside its brightest part, which
 // has no change of its own. So the greatest change within kNearPx counts.
 const float kLag = 0.002;
-const float kLagOfContrast = 0.02;
-const float kNearPx = 12.0;
+const float kLagOfContrast = 0.01;
+const float kNearPx = 18.0;
+
+// The step before averages its light itself, so that each frame has less error than those before it: history counts as this
+// part of the frames that it has averaged, where no contrast is there to smooth. With all of them taa lost 0.4 dB.
+const float kPartOfAveraged = 0.25;
+const float kFramesOfContrast = 60.0;  // at a contrast of 1; grows with its square, or noise would pass for contrast
 
 vec3 change_at(vec2 place) { return textureLod(light_change, place * light_change_size.zw, 0.0).rgb; }
 
@@ -157,7 +162,8 @@ float greatest_change(vec3 change) {
     return max(max(away.r, away.g), away.b);
 }
 
-float frames_in_change(Samples samples, vec3 change) {
+// The standard deviation of the 3 x 3 px as a part of their mean.
+float contrast_of(Samples samples) {
     float sum = 0.0, squares = 0.0, count = 1e-20;
     for (int i = 0; i < 9; ++i) {
         float value = samples.usable[i] ? luma(samples.light[i].rgb) : 0.0;
@@ -165,8 +171,15 @@ float frames_in_change(Samples samples, vec3 change) {
         squares += value * value;
         count += samples.usable[i] ? 1.0 : 0.0;
     }
-    float mean = sum / count, contrast = sqrt(max(squares / count - mean * mean, 0.0)) / max(mean, 1e-10);
-    return (kLag + kLagOfContrast * contrast) / max(greatest_change(change), 1e-6);
+    float mean = sum / count;
+    return sqrt(max(squares / count - mean * mean, 0.0)) / max(mean, 1e-10);
+}
+
+// The most frames of history that count.
+float frames_in_change(Samples samples, vec4 change) {
+    float contrast = contrast_of(samples);
+    float frames = (kLag + kLagOfContrast * contrast) / max(greatest_change(change.rgb), 1e-6);
+    return change.a > 0.0 ? min(frames, kPartOfAveraged * change.a + kFramesOfContrast * contrast * contrast) : frames;
 }
 #endif
 
@@ -179,9 +192,9 @@ void main() {
     float frames = reprojected.z, part = 1.0;
     vec4 history = frames > 0.0 ? history_at(gl_FragCoord.xy - reprojected.xy) : current;
 #ifdef HAS_LIGHT_CHANGE
-    vec3 change = texelFetch(light_change, p, 0).rgb;
-    if (frames > 0.0 && is_light(vec4(change, 1.0))) {
-        history.rgb *= change;
+    vec4 change = texelFetch(light_change, p, 0);
+    if (frames > 0.0 && is_light(change)) {
+        history.rgb *= change.rgb;
         frames = min(frames, frames_in_change(samples, change));
     }
 #endif

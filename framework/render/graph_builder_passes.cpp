@@ -131,12 +131,13 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
 
 /// An input that an earlier step made may have another format than the role: then a draw converts it.
 void GraphBuilder::add_copy_pass(StepBuild& build, const PassSpec& spec) {
-    const graph::TextureHandle from = build.read_handle(spec.reads.front().name);
+    const ReadSpec& read = spec.reads.front();
+    const graph::TextureHandle from = read.previous ? build.previous.at(read.name) : build.read_handle(read.name);
     const std::string& name = spec.writes.front().name;
     const graph::TextureHandle to = build.textures.at(name);
     const auto& source = graph_.textures()[std::size_t(from.texture)];
     const gpu::TextureDesc &a = source.desc, &b = graph_.textures()[std::size_t(to.texture)].desc;
-    if (from.version == 0 && !source.options.clear) unwritten(build, spec, spec.reads.front().name);
+    if (from.version == 0 && !source.options.clear) unwritten(build, spec, read.name);
     graph::Pass pass;
     pass.name = build.prefix() + spec.name;
     pass.reads.push_back({from, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(from)});

@@ -159,6 +159,9 @@ TEST(ManifestPasses, SayWhatIsWrongWithACopy) {
         {{copy("color", "small"), {"pass 'x': copies 'color' to 'small', " + differ}},
          {copy("depth", "color"), {"pass 'x': copies 'depth' to 'color', " + differ}},
          {copy("pyramid", "color"), {"pass 'x': copies 'pyramid' to 'color', " + differ}},
+         {copy("pyramid.prev", "color"),
+          {"pass 'x': copies 'pyramid' to 'color', " + differ,
+           "pass 'x': reads 'pyramid.prev', but 'pyramid' has no 'history'"}},
          {copy("colour", "color"),
           {"pass 'x': reads 'colour', which is neither an input nor a texture; did you mean 'color'?"}},
          {R"({"name": "x", "kind": "copy", "from": "color"})", {"the copy pass has no 'to'"}}});

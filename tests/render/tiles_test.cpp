@@ -277,6 +277,50 @@ TEST(CopyOfAPass, KeepsEveryBitOutsideTheTilesDrawn) {
             }
 }
 
+/// Draws one more tile of `kept` in each frame, over what the frame before left.
+const char* const kKept =
+    R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+    "textures": { "marks": { "format": "r8", "tile": 16, "doc": "." },
+                  "kept": { "format": "r32f", "history": true, "doc": "." } },
+    "tiles": { "chosen": { "of": "marks.r", "doc": "." } },
+    "passes": [
+        { "name": "mark", "shader": "main.frag", "reads": ["color"], "writes": ["marks"], "defines": { "MARK": 1 } },
+        { "name": "before", "kind": "copy", "from": "kept.prev", "to": "kept" },
+        { "name": "now", "shader": "main.frag", "reads": ["color"], "writes": ["kept"], "over": "chosen", "defines": { "NOW": 1 } },
+        { "name": "show", "shader": "main.frag", "reads": ["kept"], "writes": ["color"] } ])";
+
+const char* const kKeptShader = R"(
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+#if defined(MARK)
+    out_marks = ivec2(texelFetch(color, ivec2(0), 0).r, 1) == p ? 1.0 : 0.0;
+#elif defined(NOW)
+    out_kept = texelFetch(color, ivec2(0), 0).r + 1.0;
+#else
+    out_color = vec4(texelFetch(kept, p, 0).r);
+#endif
+}
+)";
+
+TEST(CopyOfAPass, BeginsATextureWithWhatTheFrameBeforeLeftInIt) {
+    EffectFolder effects;
+    effects.add("kept", kKept, kKeptShader);
+    Bench bench(effects, look_of(R"({"effect": "kept"})"));
+    for (int frame = 0; frame < 4; ++frame) {
+        Capture capture = make_capture(
+            {.width = kTiledWidth, .height = kTiledHeight, .background = {float(frame), 0, 0}});
+        capture.header.frame = frame;
+        const Image result = bench.color(capture);
+        for (int y = 0; y < kTiledHeight; ++y)
+            for (int x = 0; x < kTiledWidth; ++x) {
+                const int tile = x / kTilePx;
+                const bool drawn = y / kTilePx == 1 && tile <= frame;
+                ASSERT_EQ(result.at(x, y, 0), drawn ? float(tile + 1) : 0.0f)
+                    << "frame " << frame << ": " << x << ", " << y;
+            }
+    }
+}
+
 TEST(CopyOfAPass, ConvertsWhatAnEarlierStepMadeInAnotherFormat) {
     EffectFolder effects;
     effects.add("copied", kCopied, kCopiedShader);

@@ -193,7 +193,7 @@ Block copy_kind() {
     return {.name = "copy",
             .thing = "the copy pass",
             .keys = {
-                required("from", text({.min_length = 1, .type = "name"}),
+                required("from", text({.min_length = 1, .type = "name, `name.prev`"}),
                          "Input or texture to copy, bit for bit."),
                 required("to", text({.min_length = 1, .type = "name"}),
                          "Output or texture of the same size, format and levels to copy to. On software GL a "

@@ -98,6 +98,8 @@ private:
 
 // ---- what passes and tile lists use (manifest_uses.cpp, manifest_when.cpp) ----
 
+/// "name.prev" is the last frame's: takes the end off and returns whether it was there.
+bool take_prev(std::string& name);
 /// The items of "reads" and "writes". True where the rest is what the shaders' text names: the key is left
 /// out, or an item is "*".
 bool read_reads(const grammar::Reader& owner, std::vector<ReadSpec>& reads);

@@ -36,6 +36,7 @@ void ManifestParser::copied(const Reader& reader, PassSpec& pass) {
     ReadSpec from;
     from.name = reader.text("from");
     from.place = reader.place("from");
+    from.previous = take_prev(from.name);
     pass.reads = {from};
     WriteSpec to;
     to.name = reader.text("to");

@@ -5,15 +5,14 @@ namespace aftershade {
 
 using grammar::Reader;
 
-namespace {
-
-/// "name.prev" is the last frame's: takes the end off and says whether it was there.
 bool take_prev(std::string& name) {
     constexpr std::string_view kPrev = ".prev";
     if (!name.ends_with(kPrev)) return false;
     name.resize(name.size() - kPrev.size());
     return true;
 }
+
+namespace {
 
 /// A number, or kPassIndex and what is added to it.
 int level_of(const Reader& reader, const std::string& key, int otherwise) {
