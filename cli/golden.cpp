@@ -10,6 +10,7 @@
 
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
+#include "cli/golden_comment.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
@@ -296,8 +297,11 @@ Verb add_golden(CLI::App& app) {
     report_verb->add_option("-o,--output", options->page,
                             "Write the page here (default: index.html in that folder)");
     add_page_limit(*report_verb, *options);
-    return [options, approve_verb, report_verb] {
+    const auto comment = add_golden_comment(app);
+    auto* const comment_verb = app.get_subcommand("comment");
+    return [options, approve_verb, report_verb, comment, comment_verb] {
         return with_own_codes([&] {
+            if (comment_verb->parsed()) return comment();
             if (report_verb->parsed()) return report(*options);
             return approve_verb->parsed() ? approve(*options) : run(*options);
         });

@@ -16,6 +16,7 @@
 #include "framework/base/open_file.h"
 #include "framework/base/side_file.h"
 #include "framework/batch/page_pixels.h"
+#include "framework/batch/report_file.h"
 #include "framework/compare/layer_file.h"
 #include "framework/image/false_color.h"
 
@@ -254,21 +255,13 @@ std::string in_element(const Json& json) {
 }  // namespace
 
 void write_report_page(const fs::path& report, const fs::path& page, const ReportPageOptions& options) {
-    const fs::path file = report / "report.json";
     Json data;
     Store store(options.limit_bytes);
-    try {
-        constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
-        std::string fault;
-        const std::string text = read_file_below(report, "report.json", kMostBytes, fault);
-        if (!fault.empty()) throw Error(ErrorKind::capture, file.string() + ": " + fault);
-        data = Json::parse(text);
-        check_keys(data);
-        add_images(data, report, store);
-    } catch (const Json::exception& error) {
-        throw Error(ErrorKind::capture,
-                    fmt::format("{}: is not a report of a golden suite: {}", file.string(), error.what()));
-    }
+    with_report(report, [&](Json& read) {
+        check_keys(read);
+        add_images(read, report, store);
+        data = std::move(read);
+    });
     data["palette"] = palette();
     std::error_code failure;
     data["folder"] = fs::proximate(report, fs::absolute(page).parent_path(), failure).generic_string();

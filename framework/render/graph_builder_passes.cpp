@@ -132,7 +132,8 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
 /// An input that an earlier step made may have another format than the role: then a draw converts it.
 void GraphBuilder::add_copy_pass(StepBuild& build, const PassSpec& spec) {
     const ReadSpec& read = spec.reads.front();
-    const graph::TextureHandle from = read.previous ? build.previous.at(read.name) : build.read_handle(read.name);
+    const graph::TextureHandle from =
+        read.previous ? build.previous.at(read.name) : build.read_handle(read.name);
     const std::string& name = spec.writes.front().name;
     const graph::TextureHandle to = build.textures.at(name);
     const auto& source = graph_.textures()[std::size_t(from.texture)];

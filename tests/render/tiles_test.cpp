@@ -307,8 +307,8 @@ TEST(CopyOfAPass, BeginsATextureWithWhatTheFrameBeforeLeftInIt) {
     effects.add("kept", kKept, kKeptShader);
     Bench bench(effects, look_of(R"({"effect": "kept"})"));
     for (int frame = 0; frame < 4; ++frame) {
-        Capture capture = make_capture(
-            {.width = kTiledWidth, .height = kTiledHeight, .background = {float(frame), 0, 0}});
+        Capture capture =
+            make_capture({.width = kTiledWidth, .height = kTiledHeight, .background = {float(frame), 0, 0}});
         capture.header.frame = frame;
         const Image result = bench.color(capture);
         for (int y = 0; y < kTiledHeight; ++y)

@@ -1,0 +1,134 @@
+// What `golden comment` makes of a report, its own and a stranger's.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+
+#include "framework/file/png_file.h"
+#include "tests/cli/golden_suite.h"
+
+namespace aftershade::test {
+namespace {
+
+class GoldenComment : public GoldenCommand {
+protected:
+    /// A report of one case that fails and one that passes.
+    void report_a_failure() {
+        approve();
+        change_image(image("corner.color.0001"), [](Image& pixels) { pixels.at(31, 17, 2) += 0.5f; });
+        EXPECT_EQ(run({"--report", "report"}).exit_code, 2);
+    }
+    CommandResult comment(std::vector<std::string> words = {}) {
+        words.insert(words.begin(), {"comment", "report"});
+        return golden(words);
+    }
+    /// Another program's hand in report.json.
+    template <typename Change>
+    void change_report(Change change) {
+        Json report = Json::parse(read_text(folder_ / "report/report.json"));
+        change(report);
+        write_text(folder_ / "report/report.json", report.dump());
+    }
+};
+
+TEST_F(GoldenComment, NamesWhatDiffersByHowMuchWhereAndWhatApprovesIt) {
+    report_a_failure();
+    const CommandResult result = comment();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(result.out.starts_with("<!-- aftershade golden: golden.json -->\n")) << result.out;
+    EXPECT_NE(result.out.find("1 failed, 0 with warnings, 1 as approved"), result.out.npos) << result.out;
+    EXPECT_TRUE(std::regex_search(
+        result.out,
+        std::regex(
+            R"(\| `corner` \| `corner\.color\.0001` \| failure \| `0\.5 at \(31, 17\) B` \| 0\.0434 % \|)")))
+        << result.out;
+    EXPECT_NE(result.out.find("aftershade golden approve golden.json --filter corner"), result.out.npos);
+    EXPECT_EQ(result.out.find("lens"), result.out.npos) << "what passes is not listed";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "report/thumbnails.png"));
+}
+
+TEST_F(GoldenComment, ShowsThumbnailsFromTheUrlThatServesTheReport) {
+    report_a_failure();
+    const CommandResult result = comment({"--pictures-url", "https://ci.example/7", "-o", "comment.md"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(read_text(folder_ / "comment.md").find("(https://ci.example/7/thumbnails.png)"),
+              std::string::npos);
+    const Image sheet = read_png(folder_ / "report/thumbnails.png");
+    EXPECT_EQ(sheet.width(), 3 * 240 + 2 * 4);
+    // The difference is of one pixel alone, in the third column.
+    const Image difference = read_png(folder_ / "report/images/corner.color.0001.difference.png");
+    EXPECT_LE(sheet.height(), 184);
+    float most = 0;
+    for (int y = 0; y < sheet.height(); ++y)
+        for (int x = 488; x < sheet.width(); ++x) most = std::max(most, sheet.at(x, y, 2));
+    EXPECT_GT(most, 0.0f);
+}
+
+TEST_F(GoldenComment, OfARunThatPassesIsOneLine) {
+    approve();
+    EXPECT_EQ(run({"--report", "report"}).exit_code, 0);
+    const CommandResult result = comment();
+    EXPECT_NE(result.out.find("### Golden images: 2 cases as approved\n"), result.out.npos) << result.out;
+    EXPECT_EQ(result.out.find("|"), result.out.npos);
+}
+
+TEST_F(GoldenComment, OfARunThatEndedEarlySaysWhy) {
+    write_text(folder_ / "golden.json", "{ \"aftershade\": 1, \"cases\": 3 }");
+    EXPECT_EQ(run({"--report", "report"}).exit_code, 64);
+    const CommandResult result = comment();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("the run ended early"), result.out.npos) << result.out;
+    EXPECT_NE(result.out.find("'cases'"), result.out.npos) << result.out;
+}
+
+TEST_F(GoldenComment, AnnotatesTheDocumentOfTheCaseAndWritesSarif) {
+    report_a_failure();
+    const CommandResult result = comment({"--annotations", "--sarif", "golden.sarif"});
+    EXPECT_TRUE(result.out.starts_with(
+        "::error file=golden.json,title=golden corner::corner.color.0001: RGB: 1 pixel"))
+        << result.out;
+    const Json sarif = Json::parse(read_text(folder_ / "golden.sarif"));
+    EXPECT_EQ(sarif["version"], "2.1.0");
+    const Json& found = sarif["runs"][0]["results"];
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0]["ruleId"], sarif["runs"][0]["tool"]["driver"]["rules"][0]["id"]);
+    EXPECT_EQ(found[0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "golden.json");
+}
+
+TEST_F(GoldenComment, OfAStrangersReportHasNoMarkdownButItsOwn) {
+    report_a_failure();
+    write_text(folder_ / "secret.png", "secret");
+    change_report([](Json& report) {
+        report["suite"] = "x --> <img src=x>";
+        Json& test = report["cases"][1];
+        test["name"] = "a` | @everyone\n# big <script>";
+        test["file"] = "a b:c,d\n::error::x";
+        test["images"][0]["pictures"]["test"] = "../secret.png";
+        test["images"][0]["pictures"]["reference"] = "/etc/passwd";
+    });
+    const CommandResult result = comment({"--pictures-url", "u"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("`a' \\| @everyone?# big <script>`"), result.out.npos) << result.out;
+    EXPECT_EQ(result.out.find("<img"), result.out.npos);
+    EXPECT_EQ(result.out.find("\n# big"), result.out.npos);
+    const CommandResult annotated = comment({"--annotations"});
+    EXPECT_EQ(std::count(annotated.out.begin(), annotated.out.end(), '\n'), 1) << annotated.out;
+}
+
+TEST_F(GoldenComment, OfWhatIsNoReportIsAFileError) {
+    std::filesystem::create_directories(folder_ / "report");
+    EXPECT_EQ(comment().exit_code, 4);
+    for (const char* text :
+         {"{}", "[]", "{", R"({"suite": "s", "cases": [{"verdict": 3}], "orphans": []})"}) {
+        write_text(folder_ / "report/report.json", text);
+        const CommandResult result = comment();
+        EXPECT_EQ(result.exit_code, 4) << text << result.err;
+        EXPECT_NE(result.err.find("is not a report of a golden suite"), result.err.npos) << result.err;
+    }
+    write_text(folder_ / "report/report.json", "{}");
+    EXPECT_EQ(comment({"-o", "report/report.json"}).exit_code, 64) << "the report itself stays";
+}
+
+}  // namespace
+}  // namespace aftershade::test
