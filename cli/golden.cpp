@@ -11,6 +11,7 @@
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
 #include "cli/golden_comment.h"
+#include "cli/golden_init.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
@@ -297,11 +298,11 @@ Verb add_golden(CLI::App& app) {
     report_verb->add_option("-o,--output", options->page,
                             "Write the page here (default: index.html in that folder)");
     add_page_limit(*report_verb, *options);
-    const auto comment = add_golden_comment(app);
-    auto* const comment_verb = app.get_subcommand("comment");
-    return [options, approve_verb, report_verb, comment, comment_verb] {
+    const std::vector<std::function<ExitCode()>> others{add_golden_comment(app), add_golden_init(app)};
+    return [options, approve_verb, report_verb, others, &app] {
         return with_own_codes([&] {
-            if (comment_verb->parsed()) return comment();
+            if (app.got_subcommand("comment")) return others[0]();
+            if (app.got_subcommand("init")) return others[1]();
             if (report_verb->parsed()) return report(*options);
             return approve_verb->parsed() ? approve(*options) : run(*options);
         });

@@ -74,6 +74,10 @@ void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
     app.add_option("--filter", options.filters,
                    "Only cases whose name matches this glob or that have this tag; repeatable")
         ->allow_extra_args(false);
+    add_golden_drawing_options(app, options);
+}
+
+void add_golden_drawing_options(CLI::App& app, GoldenOptions& options) {
     app.add_option("-j,--jobs", options.jobs, "Cases to render at a time (default: one per core)")
         ->check(CLI::Range(0, 1024));
     app.add_option("--timeout", options.timeout_s, "Time limit per case, in seconds")

@@ -32,6 +32,8 @@ struct GoldenOptions {
 };
 
 void add_shared_golden_options(CLI::App& app, GoldenOptions& options);
+/// Those of them that say how cases are drawn.
+void add_golden_drawing_options(CLI::App& app, GoldenOptions& options);
 
 /// The suite, what its workers will draw with, and what reports write about both. Throws
 /// CodedError(kCompareUsage) with every fault of documents and words, Error(ErrorKind::gl) without a usable
