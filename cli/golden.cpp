@@ -273,6 +273,12 @@ Verb add_golden(CLI::App& app) {
     auto* run_verb = app.add_subcommand("run", "Render the cases and compare them with their goldens");
     add_shared_golden_options(*run_verb, *options);
     run_verb->add_flag("--no-skip", options->no_skip, "Treat skipped cases as failures");
+    run_verb
+        ->add_option("--repeat", options->repeat,
+                     "Draw each case this many times; a case fails whose runs differ in bits, and names the "
+                     "first pass that does")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     run_verb->add_option("--junit", options->junit, "Write JUnit XML to this file");
     run_verb->add_option("--report", options->report,
                          "Write a report (index.html, report.json, pictures) to this folder");

@@ -107,6 +107,7 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     run.jobs = options.jobs > 0 ? options.jobs : cores;
     run.filters = options.filters;
     run.no_skip = options.no_skip;
+    run.runs = options.repeat;
     run.program = AFTERSHADE_VERSION;
     run.report = options.report;
     run.render.timeout = std::chrono::milliseconds(std::int64_t(options.timeout_s * 1000));

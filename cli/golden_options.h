@@ -22,6 +22,7 @@ struct GoldenOptions {
     double timeout_s = 600;
     // run
     bool json = false, no_skip = false;
+    int repeat = 1;
     std::string junit, report;
     // approve
     bool any_renderer = false, add = false, renew_sidecars = false;

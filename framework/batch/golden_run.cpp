@@ -16,6 +16,7 @@
 #include "framework/base/error.h"
 #include "framework/base/scratch_folder.h"
 #include "framework/batch/capture_hash.h"
+#include "framework/batch/determinism.h"
 #include "framework/batch/look_hash.h"
 
 namespace aftershade {
@@ -72,6 +73,13 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictu
         result.verdict = std::max(result.verdict, result.images.back().verdict);
     }
     check_layers(result);
+    if (options.runs == 1 || rendered.images.empty()) return;
+    const std::string difference =
+        difference_of_runs(test, options.render, rendered, options.runs, work, interrupt);
+    interrupted = interrupt;
+    if (difference.empty()) return;
+    result.verdict = std::max(result.verdict, Verdict::failure);
+    result.messages.push_back(difference);
 }
 
 }  // namespace

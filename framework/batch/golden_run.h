@@ -78,6 +78,7 @@ struct GoldenRunOptions {
     std::filesystem::path report;  ///< <report>/images exists and is for pictures; "": none are written
     int jobs = 1;
     bool no_skip = false;  ///< a skipped case fails
+    int runs = 1;          ///< times that each case is drawn; it fails where the bits differ
 };
 
 struct GoldenSuiteResult {

@@ -5,20 +5,12 @@
 #include "framework/base/atomic_file.h"
 #include "framework/base/content_hash.h"
 #include "framework/base/text.h"
+#include "framework/batch/bound_case.h"
 #include "framework/look/look_content.h"
-#include "framework/look/pipeline.h"
 
 namespace aftershade {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-[[noreturn]] void refuse() {
-    throw Error(ErrorKind::usage, "the look has faults");
-}
-
-}  // namespace
 
 LookHasher::LookHasher(std::vector<fs::path> effect_folders, fs::path glsl_folder,
                        const std::vector<fs::path>& plugins)
@@ -40,26 +32,14 @@ std::string LookHasher::hash(const GoldenCase& test) {
 }
 
 std::string LookHasher::text_of(const GoldenCase& test) {
-    Diagnostics faults;
-    std::optional<Look> look;
-    if (!test.look.empty()) {
-        look = read_look(test.look, faults);
-    } else if (auto node = parse_document(test.steps, test.file.string(), faults)) {
-        node->place.file = (test.folder / test.file.filename()).string();
-        look = parse_look(*node, faults);
-    }
-    if (!look) refuse();
-    PipelineOptions options;
-    options.sets = test.sets;
-    const Pipeline pipeline = bind_pipeline(*look, effects_, options, faults);
-    if (faults.has_errors()) refuse();
+    const auto [look, pipeline] = bind_case(test, effects_);
     std::string text = test.steps + plugins_;
     // Of a suite or a case only the steps count; its tolerance changes no picture.
-    for (std::size_t i = test.look.empty() ? 1 : 0; i < look->files.size(); ++i)
-        text += read_text_file(look->files[i], ErrorKind::usage);
+    for (std::size_t i = test.look.empty() ? 1 : 0; i < look.files.size(); ++i)
+        text += read_text_file(look.files[i], ErrorKind::usage);
     for (const std::string& set : test.sets) text += "\n" + set;
     std::set<std::string> ids;
-    for (const LookStep& step : look->steps)
+    for (const LookStep& step : look.steps)
         if (!is_isf_path(step.effect)) ids.insert(step.effect);
     for (const std::string& id : ids) text += effect_text(id);
     for (const PipelineStep& step : pipeline.steps)

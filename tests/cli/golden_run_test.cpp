@@ -9,6 +9,7 @@
 #include "framework/file/png_file.h"
 #include "tests/backends.h"
 #include "tests/cli/golden_suite.h"
+#include "tests/cli/native_effect.h"
 
 namespace aftershade::test {
 namespace {
@@ -136,6 +137,26 @@ TEST_F(GoldenRun, CatchesAnOutputThatTheCaseDoesNotName) {
         EXPECT_EQ(approval.exit_code, 2) << approval.err;
         EXPECT_NE(approval.err.find(name), std::string::npos) << approval.err;
     }
+}
+
+TEST_F(GoldenRun, RepeatedNamesTheFirstPassThatIsNotTheSameTwice) {
+    write_native_effect(folder_.path(), "wanders");
+    write_text(folder_ / "golden.json", R"({ "aftershade": 1, "effect_paths": ["effects"], "cases": [
+    { "name": "steady", "steps": [ { "effect": "bokeh" }, { "effect": "vignette" } ], "capture": "in_####.exr", "frames": "1",
+      "tolerance": { "fail": 1e9 } },
+    { "name": "unsteady", "steps": [ { "effect": "vignette" }, { "effect": "wanders" }, { "effect": "bokeh" } ],
+      "capture": "in_####.exr", "frames": "1", "tolerance": { "fail": 1e9 } } ] })");
+    approve({"--plugin-path", AFTERSHADE_CASES});
+    EXPECT_LT(run({"--plugin-path", AFTERSHADE_CASES}).exit_code, 2) << "the tolerance hides it";
+    const CommandResult result = run({"--plugin-path", AFTERSHADE_CASES, "--repeat", "3"});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(
+        result.err.find("FAILED unsteady: failure\n    not deterministic: run 2 of 3 gave other bits in "
+                        "unsteady.color.0001; the first pass whose result differs is 'wanders.main' "
+                        "(unsteady.wanders.color.0001)\n"),
+        std::string::npos)
+        << result.err;
+    EXPECT_EQ(result.err.find("FAILED steady"), std::string::npos) << result.err;
 }
 
 // ---- what changes no bit ----

@@ -17,6 +17,9 @@
 #ifndef CASE_PREPARE
 #define CASE_PREPARE
 #endif
+#ifndef CASE_GAIN
+#define CASE_GAIN gain * frame->number
+#endif
 #ifndef CASE_DESTROY
 #define CASE_DESTROY
 #endif
@@ -30,7 +33,7 @@ static aftershade_status prepare(const aftershade_instance *instance, const afte
     (void)instance;
     CASE_PREPARE;
     frame->params->get_float(frame->params, "gain", &gain);
-    const float value = (float)(gain * frame->number);
+    const float value = (float)(CASE_GAIN);
     return output->set_float(output, "gain", &value, 1);
 }
 
