@@ -108,6 +108,9 @@ void write_reports(const GoldenOptions& options, const GoldenSuiteResult& result
 /// What the sums do not say: why a run that is not bad proves less than it seems to.
 void print_notes(const GoldenSuiteResult& result) {
     if (result.all_skipped()) std::cerr << "warning: every case was skipped; nothing was compared\n";
+    for (const GoldenCaseResult& test : result.cases)
+        if (!test.test->quarantine.until.empty() && test.skipped.empty() && test.verdict == Verdict::same)
+            std::cerr << fmt::format("note: {} passes; it needs no quarantine\n", test.test->name);
     std::vector<fs::path> bare;
     for (const GoldenCaseResult& test : result.cases)
         for (const GoldenImage& image : test.images)

@@ -64,6 +64,8 @@ void read_golden_case(const grammar::Reader& reader, const fs::path& folder, Gol
     }
     result.tags = reader.texts("tags");
     result.skip = reader.text("skip");
+    if (const auto quarantine = reader.object("quarantine"))
+        result.quarantine = {quarantine->text("until"), quarantine->text("reason")};
     result.optional = reader.boolean("optional");
 }
 

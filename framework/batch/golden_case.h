@@ -30,6 +30,12 @@ struct GoldenArea {
     std::optional<Levels> levels;   ///< nullopt: left out
 };
 
+/// Until when a failure is a warning.
+struct Quarantine {
+    std::string until;  ///< the last day, "2027-01-31", UTC; "": there is none
+    std::string reason;
+};
+
 struct GoldenCase {
     std::string name;               ///< unique in its suite: "vignette", of an effect "bloom/lamps"
     std::string stem;               ///< what its goldens' file names begin with: "lamps"
@@ -46,7 +52,8 @@ struct GoldenCase {
     CompareRules rules;                         ///< the tolerance but for its areas
     std::vector<GoldenArea> areas;
     std::vector<std::string> tags;
-    std::string skip;       ///< why it is not run; "" where it is
+    std::string skip;  ///< why it is not run; "" where it is
+    Quarantine quarantine;
     bool optional = false;  ///< skipped, not failed, where its capture is absent
 
     /// "lamps.color", of a tap "lamps.bloom.bright": what FramePattern adds ".0001.exr" to.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -147,6 +149,25 @@ bool is_case_name(const std::string& name) {
 }
 
 /// What each case has, wherever it stands.
+bool is_day(const std::string& text) {
+    using namespace std::chrono;
+    int year = 0;
+    unsigned month = 0, day = 0;
+    return text.size() == 10 && std::sscanf(text.c_str(), "%4d-%2u-%2u", &year, &month, &day) == 3 &&
+           year_month_day(std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)).ok();
+}
+
+Block quarantine_block() {
+    const Form date = text({.pattern = {"^[0-9]{4}-[0-9]{2}-[0-9]{2}$", is_day},
+                            .fault = "'{}' is not a day such as 2027-01-31",
+                            .type = "day such as \"2027-01-31\""});
+    return {.name = "quarantine",
+            .thing = "the quarantine",
+            .doc = "A failure that is known.",
+            .keys = {required("until", date, "Last day, UTC. From the next day on, the case fails."),
+                     required("reason", text({.min_length = 1}), "Why, for the report.")}};
+}
+
 std::vector<Key> common_keys() {
     const Form range = frame_range_form("'{}' is not a range of frames");
     const Form steps = grammar::list(grammar::custom({.type = "[steps of a look](looks.md)"}));
@@ -164,6 +185,8 @@ std::vector<Key> common_keys() {
         optional("tags", texts(), "Words for `--filter`; none may be another case's name."),
         optional("skip", text({.fault = "'skip' says why", .min_length = 1}),
                  "Reason for not running the case."),
+        optional("quarantine", grammar::object(quarantine_block()),
+                 "Until when a failure of the case's images is a warning only."),
         optional("optional", grammar::boolean(),
                  "Whether the case is skipped where its capture is absent; else it fails.", "false")};
 }

@@ -57,6 +57,16 @@ void check_layers(GoldenCaseResult& result) {
     }
 }
 
+/// A failure of images is a warning until the day is over. One of files is none that a picture decides.
+void quarantine(GoldenCaseResult& result) {
+    const Quarantine& quarantine = result.test->quarantine;
+    if (quarantine.until.empty() || result.verdict <= Verdict::warning) return;
+    const bool is_over = quarantine.until < fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
+    result.messages.push_back(fmt::format("quarantine {} {}: {}", is_over ? "ended" : "until",
+                                          quarantine.until, quarantine.reason));
+    if (!is_over && result.verdict != Verdict::file_error) result.verdict = Verdict::warning;
+}
+
 void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictures* pictures,
               const std::atomic<bool>& interrupt, GoldenCaseResult& result, bool& interrupted) {
     const GoldenCase& test = *result.test;
@@ -151,6 +161,7 @@ GoldenSuiteResult run_golden_suite(const GoldenSuite& suite, const GoldenRunOpti
         result.cases[i].skipped.clear();
         if (cases[i]->skip.empty()) result.cases[i].sources.capture = captures.hash(*cases[i]);
         run_case(options, work, pictures ? &*pictures : nullptr, interrupt, result.cases[i], interrupted);
+        if (result.cases[i].skipped.empty() && !interrupted) quarantine(result.cases[i]);
         if (interrupted) result.cases[i].skipped = kInterrupted;
         result.cases[i].seconds = seconds_since(begin);
         const std::scoped_lock lock(telling);

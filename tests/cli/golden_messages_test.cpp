@@ -43,6 +43,35 @@ TEST_F(GoldenMessages, OfAFailureHaveSizeAndPlaceAndWhatIsAllowed) {
     EXPECT_EQ(result.err.find(" may"), result.err.npos) << result.err;
 }
 
+TEST_F(GoldenMessages, OfAQuarantineHaveItsDayAndItsReason) {
+    for (const auto& [until, code, word] :
+         {std::tuple{"2199-12-31", 1, "until"}, {"2020-02-29", 2, "ended"}}) {
+        write_text(folder_ / "golden.json",
+                   R"({ "aftershade": 1, "cases": [ { "name": "corner", "steps": [ { "effect": "vignette" } ],
+            "capture": "in_0001.exr", "quarantine": { "until": ")" +
+                       std::string(until) + R"(", "reason": "driver 22.3 rounds otherwise" } } ] })");
+        approve();
+        const CommandResult passing = run();
+        EXPECT_EQ(passing.exit_code, 0);
+        EXPECT_NE(passing.err.find("note: corner passes; it needs no quarantine"), passing.err.npos)
+            << passing.err;
+        change_image(image("corner.color.0001"), [](Image& pixels) { pixels.at(31, 17, 2) += 0.5f; });
+        const CommandResult result = reported();
+        EXPECT_EQ(result.exit_code, code) << result.err;
+        const std::string line =
+            std::string("quarantine ") + word + " " + until + ": driver 22.3 rounds otherwise";
+        EXPECT_NE(result.err.find(line), result.err.npos) << result.err;
+        EXPECT_NE(junit().find(line), std::string::npos);
+    }
+    write_text(folder_ / "golden.json",
+               R"({ "aftershade": 1, "cases": [ { "name": "corner", "steps": [ { "effect": "vignette" } ],
+        "capture": "in_0001.exr", "quarantine": { "until": "2027-02-30" } } ] })");
+    const CommandResult faulty = run();
+    EXPECT_EQ(faulty.exit_code, 64);
+    EXPECT_NE(faulty.err.find("'2027-02-30' is not a day such as 2027-01-31"), faulty.err.npos) << faulty.err;
+    EXPECT_NE(faulty.err.find("the quarantine has no 'reason'"), faulty.err.npos) << faulty.err;
+}
+
 TEST_F(GoldenMessages, TellAReasonOfSeveralImagesOnce) {
     approve();
     write_text(folder_ / "lens.json",
