@@ -82,6 +82,10 @@ ObjectCounts Context::objects() const {
     return counts;
 }
 
+TransferUse Context::transfer_use() const {
+    return impl_->transfers->use();
+}
+
 void Context::finish() {
     make_current();
     impl_->gl.Finish();
@@ -136,6 +140,7 @@ void Context::Impl::start() {
     current = this;
     try {
         load_functions();
+        info.maps_transfers = chosen_transfer_way(info.software) == TransferWay::mapped;
     } catch (...) {
         release();
         throw;
@@ -143,17 +148,26 @@ void Context::Impl::start() {
     cache = std::make_unique<ObjectCache>(gl);
     watch_errors();
     set_state();
+    const auto way = info.maps_transfers ? TransferWay::mapped : TransferWay::direct;
+    transfers = std::make_unique<Transfers>(gl, way, [this] {
+        while (gl.GetError() != GL_NO_ERROR) {
+        }
+        errors.clear();
+    });
 }
 
 Context::Impl::~Impl() {
     if (abandoned || is_forked_from_gl()) {  // what these own goes with the process
         static_cast<void>(cache.release());
+        static_cast<void>(transfers.release());
         static_cast<void>(platform.release());
         return;
     }
     if (!try_make_current()) return;
     gl.DebugMessageCallback(nullptr, nullptr);
     cache.reset();
+    transfers.reset();
+    gl.DeleteQueries(static_cast<GLsizei>(free_queries.size()), free_queries.data());
     gl.DeleteVertexArrays(1, &vertex_array);
     gl.DeleteProgramPipelines(1, &pipeline);
     release();
