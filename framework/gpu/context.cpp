@@ -50,7 +50,9 @@ void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum, GLsizei 
 
 }  // namespace
 
-Context::~Context() = default;
+Context::~Context() {
+    if (impl_) impl_->half_kernels.reset();  // its objects refer to this
+}
 
 const ContextInfo& Context::info() const {
     return impl_->info;

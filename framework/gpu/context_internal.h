@@ -18,6 +18,7 @@
 namespace aftershade::gpu {
 
 class Buffer;
+class HalfKernels;
 
 struct Limits {
     int texture_size = 0;
@@ -58,7 +59,8 @@ struct Context::Impl {
     GLuint pipeline = 0;              ///< of programs with one stage each
     std::unique_ptr<ObjectCache> cache;
     std::unique_ptr<Transfers> transfers;
-    std::vector<GLuint> free_queries;  ///< of GL_TIMESTAMP
+    std::shared_ptr<HalfKernels> half_kernels;  ///< made where they are first needed
+    std::vector<GLuint> free_queries;           ///< of GL_TIMESTAMP
     std::size_t queries_made = 0;
     ObjectCounts handles;  ///< of Handle alone
     bool abandoned = false;

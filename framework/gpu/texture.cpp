@@ -11,6 +11,7 @@
 
 #include "framework/base/error.h"
 #include "framework/gpu/context_internal.h"
+#include "framework/gpu/texel_upload.h"
 #include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
@@ -185,8 +186,8 @@ void Texture::upload(std::span<const std::uint32_t> values, int layer, int level
                   converted<float>(values, [](std::uint32_t v) { return static_cast<float>(v); }), channels);
 }
 
-TexelRead Texture::begin_read(int channels) const {
-    return {place(0, 0), channels == 0 ? channel_count(desc_.format) : channels};
+TexelRead Texture::begin_read(int channels, ReadAs as) const {
+    return {place(0, 0), channels == 0 ? channel_count(desc_.format) : channels, as};
 }
 
 std::vector<float> Texture::read_floats(int level, int layer) const {

@@ -10,8 +10,8 @@
 #include "framework/gpu/context.h"
 #include "framework/gpu/handle.h"
 #include "framework/gpu/object_cache.h"
+#include "framework/gpu/texel_read.h"
 #include "framework/gpu/texture_desc.h"
-#include "framework/gpu/texture_transfer.h"
 
 namespace aftershade::gpu {
 
@@ -37,7 +37,7 @@ public:
     void upload(std::span<const std::uint32_t> values, int layer = 0, int level = 0);
     std::vector<float> read_floats(int level = 0, int layer = 0) const;
     /// Level 0 of an image, or of the first one: `channels` of each pixel; 0: as many as the format has.
-    TexelRead begin_read(int channels = 0) const;
+    TexelRead begin_read(int channels = 0, ReadAs as = ReadAs::stored) const;
     std::vector<std::uint32_t> read_uints(int level = 0, int layer = 0) const;
 
     /// Every texel, every level and layer.

@@ -74,6 +74,8 @@ public:
 
     /// Results of these roles are not read back: result_texture() has them, FrameResult::images has not.
     void keep_on_gpu(std::vector<std::string> roles) { kept_on_gpu_ = std::move(roles); }
+    /// Results of these roles are rounded to halfs by whoever takes them, and may come so (gpu::ReadAs).
+    void read_as_halfs(std::vector<std::string> roles) { read_as_halfs_ = std::move(roles); }
     /// The last frame's image of a requested role; nullptr if no step makes it. Valid until the next frame.
     const gpu::Texture* result_texture(const std::string& role) const;
     /// Call after a change of the pipeline that the renderer refers to, unless only values changed that
@@ -137,7 +139,7 @@ private:
     std::string frame_fault_;              // why this frame restarted history
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
     RendererOptions options_;
-    std::vector<std::string> kept_on_gpu_;
+    std::vector<std::string> kept_on_gpu_, read_as_halfs_;
     bool is_stale_ = false;
     int steps_drawn_ = 0;
     std::vector<std::string> mixes_drawn_;  // by step, as a document would write them

@@ -18,12 +18,13 @@ namespace aftershade {
 namespace {
 
 /// `channels` of a texture of floats; 0, and of integers: as many as it has.
-PendingFrame::Read begin_read(const std::string& name, const gpu::Texture& texture, int channels = 0) {
+PendingFrame::Read begin_read(const std::string& name, const gpu::Texture& texture, int channels = 0,
+                              gpu::ReadAs as = gpu::ReadAs::stored) {
     const gpu::TextureDesc& desc = texture.desc();
     const bool is_integer = gpu::is_integer(desc.format);
     if (channels == 0 || is_integer) channels = gpu::channel_count(desc.format);
     const ComponentType type = is_integer ? ComponentType::uint32 : ComponentType::float32;
-    return {name, false, Image(desc.width, desc.height, channels, type), texture.begin_read(channels)};
+    return {name, false, Image(desc.width, desc.height, channels, type), texture.begin_read(channels, as)};
 }
 
 /// Whether all values were seen to be finite.
@@ -80,14 +81,15 @@ void PipelineRenderer::begin_reads(const std::vector<std::string>& roles, Pendin
     const bool are_issued = context_.info().maps_transfers;
     if (pending.is_timed && are_issued) timer.start();
     graph::Executor& executor = *built_->executor;
-    const auto is_kept = [&](const std::string& role) {
-        return std::find(kept_on_gpu_.begin(), kept_on_gpu_.end(), role) != kept_on_gpu_.end();
+    const auto has = [](const std::vector<std::string>& list, const std::string& role) {
+        return std::ranges::find(list, role) != list.end();
     };
     for (const std::string& role : roles) {
         const auto handle = built_->results.find(role);
-        if (handle == built_->results.end() || is_kept(role)) continue;
+        if (handle == built_->results.end() || has(kept_on_gpu_, role)) continue;
+        const auto as = has(read_as_halfs_, role) ? gpu::ReadAs::halfs : gpu::ReadAs::stored;
         pending.reads.push_back(
-            begin_read(role, *executor.texture(handle->second), find_role(role)->channels));
+            begin_read(role, *executor.texture(handle->second), find_role(role)->channels, as));
     }
     for (const auto& [tap, handle] : built_->taps) {
         pending.reads.push_back(begin_read(tap, *executor.texture(handle)));

@@ -176,6 +176,8 @@ public:
     RunReport run(const std::atomic<bool>& stop) {
         const auto start = Clock::now();
         const RunOptions& run = setup_.options;
+        // A mended pixel is the mean of floats around it.
+        if (run.on_nan != NanPolicy::mend) renderer_.read_as_halfs(roles_written_as_halfs(setup_.outputs));
         if (!run.frames.empty()) frame_run_.build_ahead(0, wanted());
         try {
             frames(stop);

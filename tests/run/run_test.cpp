@@ -228,6 +228,31 @@ TEST_F(Runs, GiveTheSameFilesReportsAndHistoryWithEveryWayOfTransfers) {
     EXPECT_EQ(saved[0], saved[1]);
 }
 
+TEST_F(Runs, WriteTheSameHalvesAndWarningsWhetherTheGpuRoundsThemOrTheWriterDoes) {
+    for (const int frame : options_.frames) {
+        const SyntheticScene scene{.width = 200, .height = 100, .background = {30000.7F, 0.1234F, 1e-7F}};
+        write_capture(make_capture(scene, frame), folder_ / ("in_" + std::to_string(frame) + ".exr"));
+    }
+    ScopedVariable way("AFTERSHADE_TRANSFERS");
+    for (const NanPolicy policy : {NanPolicy::warn, NanPolicy::fail, NanPolicy::mend}) {
+        options_.on_nan = policy;
+        std::vector<std::vector<std::string>> files, warnings;
+        for (const std::string& name : kWays) {
+            way.set(name);
+            std::vector<std::string>& said = warnings.emplace_back();
+            observer_.non_finite = [&](const std::string& message) { said.push_back(message); };
+            endings();
+            std::vector<std::string>& written = files.emplace_back();
+            for (const int frame : options_.frames)
+                written.push_back(read_text(folder_ / ("out_" + std::to_string(frame) + ".exr")));
+        }
+        EXPECT_TRUE(files[0] == files[1]);
+        EXPECT_EQ(warnings[0], warnings[1]);
+        ASSERT_EQ(warnings[0].size(), 1U) << "the third frame is above 65504";
+        EXPECT_NE(warnings[0][0].find("the largest half, became infinite"), std::string::npos);
+    }
+}
+
 TEST_F(Runs, WriteEachFrameThatWasBegunWhenTheyAreInterrupted) {
     write_frames(6);
     ScopedVariable way("AFTERSHADE_TRANSFERS");

@@ -1,36 +1,18 @@
-// Texels of one level and layer of a texture, from and to the caller's memory.
+// Texels of a texture on their way to the caller's memory.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
-#include <string>
 
-#include "framework/gpu/context.h"
-#include "framework/gpu/texture_desc.h"
+#include "framework/gpu/texel_place.h"
 
 namespace aftershade::gpu {
 
-/// Where the texels are. [refers to what the caller keeps]
-struct TexelPlace {
-    Context& context;
-    unsigned int texture = 0;
-    const TextureDesc& desc;
-    const std::string& label;
-    int level = 0;
-    int layer = 0;
-
-    int width() const;
-    int height() const;
-    std::size_t texel_count() const;
-};
-
-/// Of each pixel `channels` values, at most as many as the texture has; the others are zero. Floats go into
-/// floats, integers into integers.
-void upload_texels(const TexelPlace& place, std::span<const float> values, int channels);
-void upload_texels(const TexelPlace& place, std::span<const std::uint32_t> values, int channels);
+/// `halfs`: the caller rounds them to halfs, so they may come rounded (to the nearest, ties to even). Values
+/// beyond 65504, infinities and NaN come as they are.
+enum class ReadAs { stored, halfs };
 
 /// Texels on their way to the caller. Where transfers are direct, they are fetched when finish() is called,
 /// and the texture must be as it was until then. Where they are mapped, later commands may change it.
@@ -38,7 +20,7 @@ void upload_texels(const TexelPlace& place, std::span<const std::uint32_t> value
 class TexelRead {
 public:
     /// `channels` of each pixel, the first ones.
-    TexelRead(const TexelPlace& place, int channels);
+    TexelRead(const TexelPlace& place, int channels, ReadAs as = ReadAs::stored);
     TexelRead(TexelRead&&) noexcept;
     ~TexelRead();
 

@@ -1,15 +1,17 @@
-#include "framework/gpu/texture_transfer.h"
+#include "framework/gpu/texel_read.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <cstring>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "framework/base/half_values.h"
 #include "framework/gpu/context_internal.h"
-#include "framework/gpu/texture_format.h"
+#include "framework/gpu/half_kernels.h"
 
 namespace aftershade::gpu {
 namespace {
@@ -19,41 +21,8 @@ constexpr std::size_t kMaxReadBytes = std::size_t{1} << 30;
 /// Less than a core's second cache has.
 constexpr std::size_t kCachedReadBytes = std::size_t{1} << 19;
 
-/// Whether texels are the values of client memory, so that no driver converts them, each in its way.
-bool is_unconverted(TextureFormat format) {
-    return bytes_per_texel(format) == 4 * channel_count(format);
-}
-
-std::size_t stored_channels(const TexelPlace& place) {
-    return static_cast<std::size_t>(channel_count(place.desc.format));
-}
-
-/// The first channels of each pixel, the others zero: in either direction.
-template <typename Value>
-void copy_channels(const Value* from, std::size_t from_channels, Value* to, std::size_t to_channels,
-                   std::size_t pixels) {
-    if (from_channels == to_channels) {
-        std::memcpy(to, from, pixels * to_channels * sizeof(Value));
-        return;
-    }
-    const std::size_t common = std::min(from_channels, to_channels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        std::copy_n(from + i * from_channels, common, to + i * to_channels);
-        std::fill_n(to + i * to_channels + common, to_channels - common, Value{});
-    }
-}
-
-/// `values` is memory, or an offset into the buffer that GL unpacks from.
-void sub_image(const TexelPlace& place, int row, int rows, const void* values) {
-    const GladGLContext& gl = place.context.gl();
-    const auto [internal, pixel, type] = gl_format(place.desc.format);
-    if (place.desc.layers > 1) {
-        gl.TextureSubImage3D(place.texture, place.level, 0, row, place.layer, place.width(), rows, 1, pixel,
-                             type, values);
-    } else {
-        gl.TextureSubImage2D(place.texture, place.level, 0, row, place.width(), rows, pixel, type, values);
-    }
-}
+/// HalfKernels::pack().
+constexpr std::size_t kFlagBytes = 16;
 
 void get_image(const TexelPlace& place, int row, int rows, std::size_t bytes, void* values) {
     const auto [internal, pixel, type] = gl_format(place.desc.format);
@@ -61,86 +30,7 @@ void get_image(const TexelPlace& place, int row, int rows, std::size_t bytes, vo
                                           rows, 1, pixel, type, static_cast<GLsizei>(bytes), values);
 }
 
-void* offset_pointer(std::size_t offset) {
-    return reinterpret_cast<void*>(offset);
-}
-
-/// The row before which all went.
-template <typename Value>
-int upload_mapped(const TexelPlace& place, std::span<const Value> values, std::size_t channels) {
-    Context::Impl& impl = place.context.impl();
-    const std::size_t stored = stored_channels(place);
-    const auto width = static_cast<std::size_t>(place.width());
-    const std::size_t row_bytes = width * stored * sizeof(Value);
-    int row = 0;
-    while (row < place.height()) {
-        const auto left = static_cast<std::size_t>(place.height() - row);
-        const auto piece = impl.transfers->to_write(row_bytes, row_bytes * left);
-        if (!piece) break;
-        const std::size_t rows = piece->memory.size() / row_bytes;
-        const Value* const from = &values[static_cast<std::size_t>(row) * width * channels];
-        auto* const to = reinterpret_cast<Value*>(piece->memory.data());
-        impl.transfers->share_out(
-            rows * width, stored * sizeof(Value), [&](std::size_t begin, std::size_t end) {
-                copy_channels(from + begin * channels, channels, to + begin * stored, stored, end - begin);
-            });
-        impl.gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, piece->buffer->name);
-        sub_image(place, row, static_cast<int>(rows), offset_pointer(piece->offset));
-        impl.gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-        row += static_cast<int>(rows);
-    }
-    return row;
-}
-
-template <typename Value>
-void upload(const TexelPlace& place, std::span<const Value> values, int channels) {
-    const auto from = static_cast<std::size_t>(channels);
-    const std::size_t stored = stored_channels(place);
-    assert(values.size() == place.texel_count() * from && from <= stored);
-    place.context.make_current();
-    Context::Impl& impl = place.context.impl();
-    impl.wait_for_draws();
-    const Transfers::Timed timed(*impl.transfers, &TransferUse::upload_ms);
-    int row = 0;
-    if (impl.transfers->is_mapped() && is_unconverted(place.desc.format))
-        row = upload_mapped(place, values, from);
-    if (row < place.height()) {
-        std::vector<Value> widened;
-        auto rest =
-            values.subspan(static_cast<std::size_t>(row) * static_cast<std::size_t>(place.width()) * from);
-        if (from != stored) {
-            widened.resize(rest.size() / from * stored);
-            copy_channels(rest.data(), from, widened.data(), stored, rest.size() / from);
-            rest = widened;
-        }
-        sub_image(place, row, place.height() - row, rest.data());
-    }
-    place.context.check(fmt::format("uploading texture '{}'", place.label));
-}
-
 }  // namespace
-
-int TexelPlace::width() const {
-    return std::max(1, desc.width >> level);
-}
-
-int TexelPlace::height() const {
-    return std::max(1, desc.height >> level);
-}
-
-std::size_t TexelPlace::texel_count() const {
-    return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
-}
-
-void upload_texels(const TexelPlace& place, std::span<const float> values, int channels) {
-    assert(!is_integer(place.desc.format));
-    upload(place, values, channels);
-}
-
-void upload_texels(const TexelPlace& place, std::span<const std::uint32_t> values, int channels) {
-    assert(is_integer(place.desc.format));
-    upload(place, values, channels);
-}
 
 struct TexelRead::State {
     // A copy: the texture's own object may move.
@@ -150,7 +40,9 @@ struct TexelRead::State {
     std::string label;
     int level, layer;
     std::size_t channels;
+    bool as_halfs = false;
     std::vector<MappedPiece> pieces{};
+    std::vector<MappedPiece> flags{};    ///< of pieces of halfs: not 0 where a piece has floats
     std::vector<std::uint32_t> words{};  ///< read at once, for want of pieces
     Fence drawn{}, fence{};              ///< behind what the texels come from, and behind their way
 
@@ -162,6 +54,9 @@ struct TexelRead::State {
     template <typename Value>
     void finish(std::span<Value> values, const std::function<void(std::span<const Value>)>& reader);
     template <typename Value>
+    void expand(const void* halfs, std::size_t begin, std::size_t end, Value* to,
+                const std::function<void(std::span<const Value>)>& reader) const;
+    template <typename Value>
     void narrow(const Value* from, std::size_t pixels, Value* to,
                 const std::function<void(std::span<const Value>)>& reader) const;
 };
@@ -171,18 +66,26 @@ bool TexelRead::State::issue() {
     drawn = Fence(context.gl());
     const TexelPlace at = place();
     const std::size_t row_bytes =
-        static_cast<std::size_t>(at.width()) * stored_channels(at) * sizeof(std::uint32_t);
+        static_cast<std::size_t>(at.width()) * at.stored_channels() * sizeof(std::uint32_t);
     for (int row = 0; row < at.height();) {
         const auto left = static_cast<std::size_t>(at.height() - row);
         auto piece = context.impl().transfers->to_read(row_bytes, row_bytes * left);
         if (!piece) {
             pieces.clear();
+            flags.clear();
             return false;
         }
         const int rows = static_cast<int>(piece->memory.size() / row_bytes);
-        context.gl().BindBuffer(GL_PIXEL_PACK_BUFFER, piece->buffer->name);
-        get_image(at, row, rows, piece->memory.size(), offset_pointer(piece->offset));
-        context.gl().BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+        auto flag = as_halfs ? context.impl().transfers->to_read(kFlagBytes, kFlagBytes) : std::nullopt;
+        if (flag) {
+            half_kernels(context).pack(at, {row, rows}, *piece, *flag);
+            flags.push_back(std::move(*flag));
+        } else {
+            as_halfs = false;
+            context.gl().BindBuffer(GL_PIXEL_PACK_BUFFER, piece->buffer->name);
+            get_image(at, row, rows, piece->memory.size(), reinterpret_cast<void*>(piece->offset));
+            context.gl().BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+        }
         pieces.push_back(std::move(*piece));
         row += rows;
     }
@@ -200,7 +103,7 @@ void TexelRead::State::read_now(Value* values, std::size_t band_bytes,
     context.impl().wait_for_draws();
     if (!context.info().software) Fence(context.gl()).wait();
     const Transfers::Timed timed(*context.impl().transfers, &TransferUse::read_ms);
-    const std::size_t row_values = static_cast<std::size_t>(at.width()) * stored_channels(at);
+    const std::size_t row_values = static_cast<std::size_t>(at.width()) * at.stored_channels();
     const int band =
         std::max(1, static_cast<int>(std::min(band_bytes, kMaxReadBytes) / (row_values * sizeof(Value))));
     for (int row = 0; row < at.height(); row += band) {
@@ -215,7 +118,7 @@ void TexelRead::State::read_now(Value* values, std::size_t band_bytes,
 template <typename Value>
 void TexelRead::State::narrow(const Value* from, std::size_t pixels, Value* to,
                               const std::function<void(std::span<const Value>)>& reader) const {
-    const std::size_t stored = stored_channels(place());
+    const std::size_t stored = place().stored_channels();
     const std::size_t step = std::max<std::size_t>(1, kCachedReadBytes / (stored * sizeof(Value)));
     for (std::size_t pixel = 0; pixel < pixels; pixel += step) {
         const std::size_t count = std::min(step, pixels - pixel);
@@ -225,11 +128,26 @@ void TexelRead::State::narrow(const Value* from, std::size_t pixels, Value* to,
     }
 }
 
+/// Pixels of a piece of halfs.
+template <typename Value>
+void TexelRead::State::expand(const void* halfs, std::size_t begin, std::size_t end, Value* to,
+                              const std::function<void(std::span<const Value>)>& reader) const {
+    if constexpr (std::is_same_v<Value, float>) {
+        std::array<float, 4 * kHalfBlock> block;
+        const auto* const from = static_cast<const std::uint16_t*>(halfs);
+        for (std::size_t i = begin; i < end; i += kHalfBlock) {
+            const std::size_t count = std::min(kHalfBlock, end - i);
+            from_halfs(from + 4 * i, block.data(), 4 * count);
+            narrow(block.data(), count, to + (i - begin) * channels, reader);
+        }
+    }
+}
+
 template <typename Value>
 void TexelRead::State::finish(std::span<Value> values,
                               const std::function<void(std::span<const Value>)>& reader) {
     const TexelPlace at = place();
-    const std::size_t stored = stored_channels(at);
+    const std::size_t stored = at.stored_channels();
     assert(values.size() == at.texel_count() * channels);
     if (!pieces.empty()) {
         context.make_current();
@@ -237,16 +155,20 @@ void TexelRead::State::finish(std::span<Value> values,
         const Transfers::Timed timed(*context.impl().transfers, &TransferUse::read_ms);
         fence.wait();
         Value* to = values.data();
-        for (const MappedPiece& piece : pieces) {
-            const auto* const from = reinterpret_cast<const Value*>(piece.memory.data());
-            const std::size_t pixels = piece.memory.size() / (stored * sizeof(Value));
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const auto* const from = reinterpret_cast<const Value*>(pieces[i].memory.data());
+            const std::size_t pixels = pieces[i].memory.size() / (stored * sizeof(Value));
+            // The first flags are those of the first pieces.
+            const bool has_halfs = i < flags.size() && flags[i].memory.front() == std::byte{0};
             context.impl().transfers->share_out(
                 pixels, stored * sizeof(Value), [&](std::size_t begin, std::size_t end) {
+                    if (has_halfs) return expand(from, begin, end, to + begin * channels, reader);
                     narrow(from + begin * stored, end - begin, to + begin * channels, reader);
                 });
             to += pixels * channels;
         }
         pieces.clear();
+        flags.clear();
     } else if (!words.empty()) {
         narrow(reinterpret_cast<const Value*>(words.data()), at.texel_count(), values.data(), reader);
     } else if (channels == stored) {
@@ -259,7 +181,7 @@ void TexelRead::State::finish(std::span<Value> values,
     context.check(fmt::format("reading texture '{}'", label));
 }
 
-TexelRead::TexelRead(const TexelPlace& place, int channels)
+TexelRead::TexelRead(const TexelPlace& place, int channels, ReadAs as)
     : state_(std::make_unique<State>(State{place.context, place.texture, place.desc, place.label, place.level,
                                            place.layer, static_cast<std::size_t>(channels)})) {
     assert(place.level >= 0 && place.level < place.desc.mips && place.layer >= 0 &&
@@ -267,8 +189,9 @@ TexelRead::TexelRead(const TexelPlace& place, int channels)
     place.context.make_current();
     if (!place.context.impl().transfers->is_mapped()) return;
     place.context.impl().wait_for_draws();
-    if (is_unconverted(place.desc.format) && state_->issue()) return;
-    state_->words.resize(place.texel_count() * stored_channels(place));
+    state_->as_halfs = as == ReadAs::halfs && place.may_be_halfs();
+    if (place.is_unconverted() && state_->issue()) return;
+    state_->words.resize(place.texel_count() * place.stored_channels());
     state_->read_now<std::uint32_t>(state_->words.data(), kMaxReadBytes, {});
 }
 
