@@ -89,6 +89,10 @@ std::string draws_with(const gpu::BackendReport& report) {
     }
 }
 
+std::string_view transfers_of(const gpu::BackendReport& report) {
+    return report.info.maps_transfers ? "mapped" : "direct";
+}
+
 void print_table(const std::vector<gpu::BackendReport>& reports) {
     fmt::print("{:<13} {:<7} {:<45} {}\n", "backend", "usable", "renderer", "version");
     for (const gpu::BackendReport& report : reports) {
@@ -104,6 +108,9 @@ void print_table(const std::vector<gpu::BackendReport>& reports) {
         if (report.usable)
             fmt::print("draws with    {} on {}{}\n", draws_with(report), gpu::backend_name(report.backend),
                        report.info.software ? " (a software renderer gains nothing by compute)" : "");
+    for (const gpu::BackendReport& report : reports)
+        if (report.usable)
+            fmt::print("transfers     {} on {}\n", transfers_of(report), gpu::backend_name(report.backend));
     for (const gpu::Device& device : gpu::list_devices())
         fmt::print("device        {}{}{}\n", device.text(),
                    device.renderer.empty() ? "" : ": " + device.renderer,
@@ -135,6 +142,7 @@ void print_json(const std::vector<gpu::BackendReport>& reports) {
             row["vendor"] = report.info.vendor;
             row["software"] = report.info.software;
             row["draws_with"] = draws_with(report);
+            row["transfers"] = transfers_of(report);
         } else {
             row["reason"] = report.reason;
         }

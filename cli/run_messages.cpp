@@ -246,6 +246,12 @@ void RunReporter::print_tables(const RunReport& report) const {
     constexpr double kMiB = 1024 * 1024;
     fmt::print(stderr, "textures and buffers: {:.1f} MiB ({:.1f} MiB without sharing memory)\n",
                double(report.bytes) / kMiB, double(report.bytes_unaliased) / kMiB);
+    const int frames = std::max(1, report.frames_done + report.frames_unwritten);
+    fmt::print(stderr,
+               "transfers: {}, {:.1f} MiB of buffers; a frame waited {:.2f} ms for uploads, {:.2f} ms for "
+               "readbacks\n",
+               report.gl.maps_transfers ? "mapped" : "direct", double(report.transfers.buffer_bytes) / kMiB,
+               report.transfers.upload_ms / frames, report.transfers.read_ms / frames);
 }
 
 void RunReporter::print_json_summary(const RunReport& report) const {

@@ -109,7 +109,7 @@ std::map<std::string, std::string> environment_of(const SubmitArguments& options
     if (options.farm == "kubernetes")
         std::erase_if(environment, [](const auto& variable) {
             return variable.first != "AFTERSHADE_BACKEND" && variable.first != "AFTERSHADE_DEVICE" &&
-                   variable.first != "AFTERSHADE_DRAW_WITH";
+                   variable.first != "AFTERSHADE_DRAW_WITH" && variable.first != "AFTERSHADE_TRANSFERS";
         });
     return environment;
 }

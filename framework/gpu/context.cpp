@@ -50,7 +50,9 @@ void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum, GLsizei 
 
 }  // namespace
 
-Context::~Context() = default;
+Context::~Context() {
+    if (impl_) impl_->half_kernels.reset();  // its objects refer to this
+}
 
 const ContextInfo& Context::info() const {
     return impl_->info;
@@ -80,6 +82,10 @@ ObjectCounts Context::objects() const {
     counts.framebuffers = impl_->cache->framebuffer_count();
     counts.views = impl_->cache->view_count();
     return counts;
+}
+
+TransferUse Context::transfer_use() const {
+    return impl_->transfers->use();
 }
 
 void Context::finish() {
@@ -136,6 +142,7 @@ void Context::Impl::start() {
     current = this;
     try {
         load_functions();
+        info.maps_transfers = chosen_transfer_way(info.software) == TransferWay::mapped;
     } catch (...) {
         release();
         throw;
@@ -143,17 +150,26 @@ void Context::Impl::start() {
     cache = std::make_unique<ObjectCache>(gl);
     watch_errors();
     set_state();
+    const auto way = info.maps_transfers ? TransferWay::mapped : TransferWay::direct;
+    transfers = std::make_unique<Transfers>(gl, way, [this] {
+        while (gl.GetError() != GL_NO_ERROR) {
+        }
+        errors.clear();
+    });
 }
 
 Context::Impl::~Impl() {
     if (abandoned || is_forked_from_gl()) {  // what these own goes with the process
         static_cast<void>(cache.release());
+        static_cast<void>(transfers.release());
         static_cast<void>(platform.release());
         return;
     }
     if (!try_make_current()) return;
     gl.DebugMessageCallback(nullptr, nullptr);
     cache.reset();
+    transfers.reset();
+    gl.DeleteQueries(static_cast<GLsizei>(free_queries.size()), free_queries.data());
     gl.DeleteVertexArrays(1, &vertex_array);
     gl.DeleteProgramPipelines(1, &pipeline);
     release();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/gpu/backend.h"
+#include "framework/gpu/transfer_use.h"
 
 struct GladGLContext;
 
@@ -22,7 +23,8 @@ struct ContextInfo {
     std::string device;  ///< that it draws on: "/dev/dri/card0", "EGL device 1"; "" where there is none
     std::string hardware_fault;  ///< of `automatic` that took software: "egl: EGL lists no hardware device"
     int load_units = 0;  ///< images of a shader where a load costs less than a texelFetch (llvmpipe), else 0
-    int texture_side_px = 0;  ///< at most (GL_MAX_TEXTURE_SIZE)
+    bool maps_transfers = false;  ///< texels go through mapped buffers (docs/gpu.md), else as GL copies them
+    int texture_side_px = 0;      ///< at most (GL_MAX_TEXTURE_SIZE)
 };
 
 /// One row of `aftershade doctor`.
@@ -77,6 +79,8 @@ public:
     const ContextInfo& info() const;
     /// Stays the same while the same work is done again.
     ObjectCounts objects() const;
+    /// Since the context was made.
+    TransferUse transfer_use() const;
     void make_current();
     /// The self-test that SelfTest::at_first_use has put off. Throws Error(ErrorKind::gl).
     void test_once();

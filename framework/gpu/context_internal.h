@@ -11,12 +11,14 @@
 #include "framework/gpu/context.h"
 #include "framework/gpu/object_cache.h"
 #include "framework/gpu/platform.h"
+#include "framework/gpu/transfers.h"
 
 #include <glad/gl.h>
 
 namespace aftershade::gpu {
 
 class Buffer;
+class HalfKernels;
 
 struct Limits {
     int texture_size = 0;
@@ -56,6 +58,10 @@ struct Context::Impl {
     GLuint vertex_array = 0;          ///< empty; core profile draws nothing without one
     GLuint pipeline = 0;              ///< of programs with one stage each
     std::unique_ptr<ObjectCache> cache;
+    std::unique_ptr<Transfers> transfers;
+    std::shared_ptr<HalfKernels> half_kernels;  ///< made where they are first needed
+    std::vector<GLuint> free_queries;           ///< of GL_TIMESTAMP
+    std::size_t queries_made = 0;
     ObjectCounts handles;  ///< of Handle alone
     bool abandoned = false;
     bool is_untested = false;               ///< SelfTest::at_first_use

@@ -11,14 +11,11 @@
 
 #include "framework/base/error.h"
 #include "framework/gpu/context_internal.h"
+#include "framework/gpu/texel_upload.h"
 #include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
 namespace {
-
-constexpr std::size_t kMaxReadBytes = std::size_t{1} << 30;
-/// Less than a core's second cache has.
-constexpr std::size_t kCachedReadBytes = std::size_t{1} << 19;
 
 /// The nearest integer that Integer holds; 0 for NaN.
 template <typename Integer>
@@ -29,7 +26,7 @@ Integer to_integer(double value) {
     return static_cast<Integer>(std::clamp(std::nearbyint(value), kLow, kHigh));
 }
 
-/// A clear value in client memory of value_type(): four channels of four bytes, whatever they mean.
+/// A clear value in client memory of GlFormat::type: four channels of four bytes, whatever they mean.
 std::array<std::uint32_t, 4> clear_texel(const std::array<double, 4>& value, TextureFormat format) {
     std::array<std::uint32_t, 4> texel{};
     for (std::size_t i = 0; i < texel.size(); ++i) {
@@ -63,18 +60,6 @@ std::uint32_t to_bits(float value, TextureFormat format) {
 
 int level_side(int side, int level) {
     return std::max(1, side >> level);
-}
-
-std::size_t value_count(const TextureDesc& desc, int level = 0) {
-    return static_cast<std::size_t>(level_side(desc.width, level)) *
-           static_cast<std::size_t>(level_side(desc.height, level)) *
-           static_cast<std::size_t>(channel_count(desc.format));
-}
-
-/// The type of client memory that holds `desc`'s values unchanged.
-GLenum value_type(const TextureDesc& desc) {
-    if (!is_integer(desc.format)) return GL_FLOAT;
-    return is_signed_integer(desc.format) ? GL_INT : GL_UNSIGNED_INT;
 }
 
 void check_desc(const Limits& limits, const TextureDesc& desc, const std::string& label) {
@@ -120,18 +105,6 @@ GLuint make_view(const GladGLContext& gl, unsigned int of, const TextureDesc& de
     return handle;
 }
 
-void sub_image(const GladGLContext& gl, const Texture& texture, int layer, int level, const void* values) {
-    const TextureDesc& desc = texture.desc();
-    const int width = level_side(desc.width, level), height = level_side(desc.height, level);
-    const GLenum pixel = gl_format(desc.format).pixel;
-    const GLenum type = value_type(desc);
-    if (desc.layers > 1) {
-        gl.TextureSubImage3D(texture.handle(), level, 0, 0, layer, width, height, 1, pixel, type, values);
-    } else {
-        gl.TextureSubImage2D(texture.handle(), level, 0, 0, width, height, pixel, type, values);
-    }
-}
-
 /// Whether a draw stores the bits that a clear of memory does: what is no half, llvmpipe rounds to another
 /// one.
 bool is_stored_alike(const TextureDesc& desc, const std::array<double, 4>& value) {
@@ -153,58 +126,15 @@ void clear_drawn(const GladGLContext& gl, GLuint framebuffer, const TextureDesc&
     }
 }
 
-/// `values` are value_count() of them. `band_read` gets each band of at most `band_bytes`.
-template <typename Value, typename BandRead>
-void read_into(Context& context, const Texture& texture, int level, int layer, std::span<Value> values,
-               std::size_t band_bytes, const BandRead& band_read) {
-    const TextureDesc& desc = texture.desc();
-    assert(level >= 0 && level < desc.mips && layer >= 0 && layer < desc.layers);
-    context.make_current();
-    context.impl().wait_for_draws();
-    const int width = level_side(desc.width, level);
-    const int height = level_side(desc.height, level);
-    const auto row_values =
-        static_cast<std::size_t>(width) * static_cast<std::size_t>(channel_count(desc.format));
-    // GL counts the bytes of one call in a signed 32-bit integer.
-    const int band =
-        std::max(1, static_cast<int>(std::min(band_bytes, kMaxReadBytes) / (row_values * sizeof(Value))));
-    for (int row = 0; row < height; row += band) {
-        const int rows = std::min(band, height - row);
-        const std::size_t bytes = row_values * static_cast<std::size_t>(rows) * sizeof(Value);
-        context.gl().GetTextureSubImage(texture.handle(), level, 0, row, layer, width, rows, 1,
-                                        gl_format(desc.format).pixel, value_type(desc),
-                                        static_cast<GLsizei>(bytes),
-                                        &values[row_values * static_cast<std::size_t>(row)]);
-        band_read(values.subspan(row_values * static_cast<std::size_t>(row), bytes / sizeof(Value)));
-    }
-    context.check(fmt::format("reading texture '{}'", texture.label()));
-}
-
 template <typename Value>
-std::vector<Value> read_values(Context& context, const Texture& texture, int level, int layer) {
-    std::vector<Value> values(value_count(texture.desc(), level));
-    read_into(context, texture, level, layer, std::span(values), kMaxReadBytes,
-              [](std::span<const Value>) {});
+std::vector<Value> read_values(const TexelPlace& place) {
+    const int channels = channel_count(place.desc.format);
+    std::vector<Value> values(place.texel_count() * static_cast<std::size_t>(channels));
+    TexelRead(place, channels).finish(std::span(values));
     return values;
 }
 
 }  // namespace
-
-bool may_share_memory(const TextureDesc& a, const TextureDesc& b) {
-    TextureDesc as_b = a;
-    as_b.format = b.format;
-    return as_b == b && bytes_per_texel(a.format) == bytes_per_texel(b.format);
-}
-
-std::uint64_t byte_size(const TextureDesc& desc) {
-    std::uint64_t texels = 0;
-    for (int level = 0; level < desc.mips; ++level) {
-        texels += static_cast<std::uint64_t>(std::max(1, desc.width >> level)) *
-                  static_cast<std::uint64_t>(std::max(1, desc.height >> level));
-    }
-    return texels * static_cast<std::uint64_t>(desc.layers) *
-           static_cast<std::uint64_t>(bytes_per_texel(desc.format));
-}
 
 template <>
 void Handle<ObjectKind::texture>::remove(Context& context, unsigned int name) noexcept {
@@ -234,52 +164,42 @@ Texture::Texture(const Texture& other, TextureFormat format, std::string label)
         fmt::format("texture '{}', a view of '{}' as {}", label_, other.label_, texture_format_name(format)));
 }
 
-void Texture::upload(std::span<const float> values, int layer, int level) {
-    assert(values.size() == value_count(desc_, level) && layer >= 0 && layer < desc_.layers);
-    assert(level >= 0 && level < desc_.mips);
-    if (is_integer(desc_.format)) {
-        const TextureFormat format = desc_.format;
-        upload(converted<std::uint32_t>(values, [format](float v) { return to_bits(v, format); }), layer,
-               level);
-        return;
-    }
-    handle_.context().make_current();
-    handle_.context().impl().wait_for_draws();
-    sub_image(handle_.context().gl(), *this, layer, level, values.data());
-    handle_.context().check(fmt::format("uploading texture '{}'", label_));
+TexelPlace Texture::place(int level, int layer) const {
+    return {handle_.context(), handle(), desc_, label_, level, layer};
+}
+
+void Texture::upload(std::span<const float> values, int layer, int level, int channels) {
+    if (channels == 0) channels = channel_count(desc_.format);
+    assert(level >= 0 && level < desc_.mips && layer >= 0 && layer < desc_.layers);
+    if (!is_integer(desc_.format)) return upload_texels(place(level, layer), values, channels);
+    const TextureFormat format = desc_.format;
+    upload_texels(place(level, layer),
+                  converted<std::uint32_t>(values, [format](float v) { return to_bits(v, format); }),
+                  channels);
 }
 
 void Texture::upload(std::span<const std::uint32_t> values, int layer, int level) {
-    assert(values.size() == value_count(desc_, level) && layer >= 0 && layer < desc_.layers);
-    assert(level >= 0 && level < desc_.mips);
-    if (!is_integer(desc_.format)) {
-        upload(converted<float>(values, [](std::uint32_t v) { return static_cast<float>(v); }), layer, level);
-        return;
-    }
-    handle_.context().make_current();
-    handle_.context().impl().wait_for_draws();
-    sub_image(handle_.context().gl(), *this, layer, level, values.data());
-    handle_.context().check(fmt::format("uploading texture '{}'", label_));
+    assert(level >= 0 && level < desc_.mips && layer >= 0 && layer < desc_.layers);
+    const int channels = channel_count(desc_.format);
+    if (is_integer(desc_.format)) return upload_texels(place(level, layer), values, channels);
+    upload_texels(place(level, layer),
+                  converted<float>(values, [](std::uint32_t v) { return static_cast<float>(v); }), channels);
+}
+
+TexelRead Texture::begin_read(int channels, ReadAs as) const {
+    return {place(0, 0), channels == 0 ? channel_count(desc_.format) : channels, as};
 }
 
 std::vector<float> Texture::read_floats(int level, int layer) const {
-    if (!is_integer(desc_.format)) return read_values<float>(handle_.context(), *this, level, layer);
-    const auto bits = read_values<std::uint32_t>(handle_.context(), *this, level, layer);
+    if (!is_integer(desc_.format)) return read_values<float>(place(level, layer));
+    const auto bits = read_values<std::uint32_t>(place(level, layer));
     const TextureFormat format = desc_.format;
     return converted<float>(std::span(bits), [format](std::uint32_t v) { return from_bits(v, format); });
 }
 
-void Texture::read_floats(std::span<float> values, const Reader& reader) const {
-    assert(!is_integer(desc_.format) && values.size() == value_count(desc_, 0));
-    read_into(handle_.context(), *this, 0, 0, values, reader ? kCachedReadBytes : kMaxReadBytes,
-              [&](std::span<const float> band) {
-                  if (reader) reader(band);
-              });
-}
-
 std::vector<std::uint32_t> Texture::read_uints(int level, int layer) const {
-    if (is_integer(desc_.format)) return read_values<std::uint32_t>(handle_.context(), *this, level, layer);
-    const auto floats = read_values<float>(handle_.context(), *this, level, layer);
+    if (is_integer(desc_.format)) return read_values<std::uint32_t>(place(level, layer));
+    const auto floats = read_values<float>(place(level, layer));
     return converted<std::uint32_t>(std::span(floats), to_integer<std::uint32_t>);
 }
 
@@ -305,7 +225,7 @@ void Texture::clear_to(const std::array<double, 4>& value, int level, int layer)
     const Context::Impl& impl = handle_.context().impl();
     const GladGLContext& gl = impl.gl;
     const std::array<std::uint32_t, 4> texel = clear_texel(value, desc_.format);
-    const GLenum pixel = gl_format(desc_.format).pixel;
+    const auto [internal, pixel, type] = gl_format(desc_.format);
     const int first = level < 0 ? 0 : level;
     const int last = level < 0 ? desc_.mips - 1 : level;
     // llvmpipe clears a texture on the caller's thread, and what is drawn to on all of its own.
@@ -318,10 +238,10 @@ void Texture::clear_to(const std::array<double, 4>& value, int level, int layer)
             continue;
         }
         if (layer < 0) {
-            gl.ClearTexImage(handle(), i, pixel, value_type(desc_), texel.data());
+            gl.ClearTexImage(handle(), i, pixel, type, texel.data());
         } else {
             gl.ClearTexSubImage(handle(), i, 0, 0, layer, level_side(desc_.width, i),
-                                level_side(desc_.height, i), 1, pixel, value_type(desc_), texel.data());
+                                level_side(desc_.height, i), 1, pixel, type, texel.data());
         }
     }
     handle_.context().check(fmt::format("clearing texture '{}'", label_));

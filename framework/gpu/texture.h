@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,25 +10,10 @@
 #include "framework/gpu/context.h"
 #include "framework/gpu/handle.h"
 #include "framework/gpu/object_cache.h"
-#include "framework/gpu/texture_format.h"
+#include "framework/gpu/texel_read.h"
+#include "framework/gpu/texture_desc.h"
 
 namespace aftershade::gpu {
-
-struct TextureDesc {
-    int width = 0;
-    int height = 0;
-    TextureFormat format = TextureFormat::rgba32f;
-    int layers = 1;  ///< > 1 makes a 2-D array
-    int mips = 1;
-    bool operator==(const TextureDesc&) const = default;
-};
-
-/// Whether one may be a view of the other's memory: they differ by no more than a format of as many bytes a
-/// texel. GL's classes of view-compatible formats are those of equal size, for the formats above.
-bool may_share_memory(const TextureDesc& a, const TextureDesc& b);
-
-/// Bytes that the texture's texels take, all layers and levels.
-std::uint64_t byte_size(const TextureDesc& desc);
 
 /// [the context's thread]
 class Texture {
@@ -48,14 +32,12 @@ public:
     /// Values are numbers as a shader fetches them, whatever the format: floats that go into integers are
     /// rounded and kept in range, integers that go into floats keep their value. r32i as std::uint32_t is
     /// two's complement.
-    void upload(std::span<const float> values, int layer = 0, int level = 0);
+    /// `channels`: as many values a pixel, and the others are zero; 0: as many as the format has.
+    void upload(std::span<const float> values, int layer = 0, int level = 0, int channels = 0);
     void upload(std::span<const std::uint32_t> values, int layer = 0, int level = 0);
     std::vector<float> read_floats(int level = 0, int layer = 0) const;
-    /// Looks at values that were just read and are still in the processor's cache.
-    using Reader = std::function<void(std::span<const float>)>;
-    /// Level 0 of a texture of floats into memory of its size, without a second copy. `reader` gets all rows
-    /// in turn, some at a time.
-    void read_floats(std::span<float> values, const Reader& reader = {}) const;
+    /// Level 0 of an image, or of the first one: `channels` of each pixel; 0: as many as the format has.
+    TexelRead begin_read(int channels = 0, ReadAs as = ReadAs::stored) const;
     std::vector<std::uint32_t> read_uints(int level = 0, int layer = 0) const;
 
     /// Every texel, every level and layer.
@@ -72,6 +54,8 @@ public:
     CachedTexture cached() const { return {handle(), desc_.format, desc_.layers}; }  ///< for framework/gpu
 
 private:
+    TexelPlace place(int level, int layer) const;
+
     Handle<ObjectKind::texture> handle_;
     TextureDesc desc_;
     std::string label_;

@@ -18,19 +18,19 @@ struct FormatInfo {
 };
 
 constexpr std::array<FormatInfo, 13> kFormats = {{
-    {TextureFormat::r8, "r8", 1, 1, {GL_R8, GL_RED}},
-    {TextureFormat::rg8, "rg8", 2, 2, {GL_RG8, GL_RG}},
-    {TextureFormat::rgba8, "rgba8", 4, 4, {GL_RGBA8, GL_RGBA}},
-    {TextureFormat::r16f, "r16f", 1, 2, {GL_R16F, GL_RED}},
-    {TextureFormat::rg16f, "rg16f", 2, 4, {GL_RG16F, GL_RG}},
-    {TextureFormat::rgba16f, "rgba16f", 4, 8, {GL_RGBA16F, GL_RGBA}},
-    {TextureFormat::r32f, "r32f", 1, 4, {GL_R32F, GL_RED}},
-    {TextureFormat::rg32f, "rg32f", 2, 8, {GL_RG32F, GL_RG}},
-    {TextureFormat::rgba32f, "rgba32f", 4, 16, {GL_RGBA32F, GL_RGBA}},
-    {TextureFormat::r32ui, "r32ui", 1, 4, {GL_R32UI, GL_RED_INTEGER}},
-    {TextureFormat::rg32ui, "rg32ui", 2, 8, {GL_RG32UI, GL_RG_INTEGER}},
-    {TextureFormat::rgba32ui, "rgba32ui", 4, 16, {GL_RGBA32UI, GL_RGBA_INTEGER}},
-    {TextureFormat::r32i, "r32i", 1, 4, {GL_R32I, GL_RED_INTEGER}},
+    {TextureFormat::r8, "r8", 1, 1, {GL_R8, GL_RED, GL_FLOAT}},
+    {TextureFormat::rg8, "rg8", 2, 2, {GL_RG8, GL_RG, GL_FLOAT}},
+    {TextureFormat::rgba8, "rgba8", 4, 4, {GL_RGBA8, GL_RGBA, GL_FLOAT}},
+    {TextureFormat::r16f, "r16f", 1, 2, {GL_R16F, GL_RED, GL_FLOAT}},
+    {TextureFormat::rg16f, "rg16f", 2, 4, {GL_RG16F, GL_RG, GL_FLOAT}},
+    {TextureFormat::rgba16f, "rgba16f", 4, 8, {GL_RGBA16F, GL_RGBA, GL_FLOAT}},
+    {TextureFormat::r32f, "r32f", 1, 4, {GL_R32F, GL_RED, GL_FLOAT}},
+    {TextureFormat::rg32f, "rg32f", 2, 8, {GL_RG32F, GL_RG, GL_FLOAT}},
+    {TextureFormat::rgba32f, "rgba32f", 4, 16, {GL_RGBA32F, GL_RGBA, GL_FLOAT}},
+    {TextureFormat::r32ui, "r32ui", 1, 4, {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT}},
+    {TextureFormat::rg32ui, "rg32ui", 2, 8, {GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT}},
+    {TextureFormat::rgba32ui, "rgba32ui", 4, 16, {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT}},
+    {TextureFormat::r32i, "r32i", 1, 4, {GL_R32I, GL_RED_INTEGER, GL_INT}},
 }};
 
 const FormatInfo& info(TextureFormat format) {

@@ -37,6 +37,7 @@ bool is_signed_integer(TextureFormat format);
 struct GlFormat {
     unsigned int internal = 0;  ///< GL_RGBA32F, ...
     unsigned int pixel = 0;     ///< GL_RGBA, GL_RED_INTEGER, ...
+    unsigned int type = 0;      ///< GL_FLOAT, ...: of four bytes in client memory that keep each value
 };
 
 GlFormat gl_format(TextureFormat format);

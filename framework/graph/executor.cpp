@@ -33,6 +33,13 @@ Memory* in_slot(std::vector<Memory>& slots, const std::vector<int>& slot_of, int
 
 }  // namespace
 
+std::vector<PassTime> measured(std::vector<PendingTime> times) {
+    std::vector<PassTime> result;
+    result.reserve(times.size());
+    for (PendingTime& time : times) result.push_back({std::move(time.pass), time.duration.ms()});
+    return result;
+}
+
 Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
     : context_(context), graph_(std::move(graph)), compiled_(graph_.compile(shares_memory)), timer_(context) {
     for (const int index : compiled_.passes) {
@@ -243,7 +250,7 @@ void Executor::run_pass(const BoundPass& bound) {
     for (gpu::Texture* const texture : bound.mips) texture->generate_mips();
 }
 
-std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, PassRange range) {
+std::vector<PendingTime> Executor::issue(bool timed, const PassObserver& observer, PassRange range) {
     const auto for_written = [&](const auto& act) {
         for (auto& history : texture_histories_)
             if (range.contains(history.written_by)) act(history);
@@ -253,7 +260,7 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, Pa
     for_written([](auto& history) { history.advance(); });
     if (range.begin > 0) forget_new_memory();
     sparse_->begin(range);
-    std::vector<PassTime> times;
+    std::vector<PendingTime> times;
     if (timed) times.reserve(bound_.size());
     for (std::size_t i = 0; i < bound_.size(); ++i) {
         if (!range.contains(compiled_.passes[i])) continue;
@@ -262,7 +269,8 @@ std::vector<PassTime> Executor::run(bool timed, const PassObserver& observer, Pa
         run_clears(clears_[i]);
         run_pass(bound_[i]);
         sparse_->note_places(compiled_.passes[i]);
-        if (timed) times.push_back({bound_[i].pass->name, timer_.stop_ms()});
+        if (timed) times.push_back({bound_[i].pass->name, timer_.stop()});
+        if (timed && hooks_.waits) times.back().duration.ms();
         if (observer)
             for (const BoundPass::Observed& written : bound_[i].observed)
                 observer(bound_[i].pass->name, *written.name, *written.texture);

@@ -25,6 +25,14 @@ struct PassTime {
     double milliseconds = 0;
 };
 
+/// One that the GPU may still be measuring.
+struct PendingTime {
+    std::string pass;
+    gpu::Duration duration;
+};
+/// Waits for the GPU.
+std::vector<PassTime> measured(std::vector<PendingTime> times);
+
 /// [the context's thread]
 class Executor {
 public:
@@ -54,16 +62,21 @@ public:
     struct PassHooks {
         std::function<void(const std::string& pass)> begins;
         std::function<void(const std::string& pass)> ended;  ///< may throw: the frame is lost then
+        bool waits = false;          ///< a timed pass has ended on the GPU before the next begins
         gpu::BufferBinding storage;  ///< besides the pass's own, of all but clears; none: its buffer is null
     };
     /// Once, before the first run. The buffer must outlive this.
     void set_hooks(PassHooks hooks);
 
-    /// Runs every pass. With `timed`, waits for each and returns its milliseconds (see gpu::Timer); else
-    /// returns {}. `observer`, if any, sees each target right after its pass; its time counts for no pass.
+    /// Issues every pass. With `timed`, measures each (see gpu::Timer); else returns {}. `observer`, if any,
+    /// sees each target right after its pass; its time counts for no pass.
     /// At the end, each history that was written becomes what the next run reads as its `previous`. `range`:
     /// only these, so that some passes may run several times in a frame; what was written before stays.
-    std::vector<PassTime> run(bool timed, const PassObserver& observer = {}, PassRange range = {});
+    std::vector<PendingTime> issue(bool timed, const PassObserver& observer = {}, PassRange range = {});
+    /// The same; with `timed`, waits for the passes to end.
+    std::vector<PassTime> run(bool timed, const PassObserver& observer = {}, PassRange range = {}) {
+        return measured(issue(timed, observer, range));
+    }
 
     /// The textures that the next run will read as `previous`, by the history's name; only those that some
     /// pass reads. To be read; the pointers hold until the next run.

@@ -23,12 +23,23 @@ struct FrameSetting {
     FrameInputs inputs(const Capture& capture, int subframe = 0, const Capture* centre = nullptr) const;
 };
 
+/// A frame whose sub-frames were all issued.
+struct BegunFrame {
+    std::shared_ptr<const Capture> centre;  ///< the sub-frame at the middle of the exposure
+    std::vector<PendingFrame> subframes;
+};
+
 struct DrawnFrame {
     std::shared_ptr<const Capture> centre;  ///< the sub-frame at the middle of the exposure
     FrameResult result;                     ///< with the times and the messages of all sub-frames
 };
 
 using TakeSubframe = std::function<std::shared_ptr<const Capture>(int subframe)>;
+
+/// Takes and issues each sub-frame in turn (PipelineRenderer::begin).
+BegunFrame begin_frame(PipelineRenderer& renderer, const FrameSetting& setting, const TakeSubframe& take,
+                       const std::vector<std::string>& roles);
+DrawnFrame finish_frame(BegunFrame begun);
 
 /// Takes and draws each sub-frame in turn; `again` as PipelineRenderer::render_again. Throws what `take` and
 /// PipelineRenderer::render throw.

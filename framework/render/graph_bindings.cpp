@@ -13,23 +13,14 @@ namespace aftershade {
 
 namespace {
 
-/// Texels of three-channel roles, and of an AOV that has fewer than four, carry zeros that nothing reads.
-std::vector<float> widened(const Image& image, int stored_channels) {
-    const auto channels = std::size_t(image.channels()), stored = std::size_t(stored_channels);
-    std::vector<float> texels(image.floats().size() / channels * stored);
-    for (std::size_t i = 0; i < texels.size() / stored; ++i)
-        std::copy_n(&image.floats()[i * channels], channels, &texels[i * stored]);
-    return texels;
-}
-
 void upload(const Image& image, gpu::Texture& texture) {
     const int stored = gpu::channel_count(texture.desc().format);
     if (image.channels() > stored)
         throw Error(ErrorKind::effect, fmt::format("{}: an image of {} channels, its role has {}",
                                                    texture.label(), image.channels(), stored));
+    // Texels of three-channel roles, and of an AOV that has fewer than four, carry zeros that nothing reads.
     if (image.type() == ComponentType::uint32) texture.upload(image.uints());
-    else if (image.channels() < stored) texture.upload(widened(image, stored));
-    else texture.upload(image.floats());
+    else texture.upload(image.floats(), 0, 0, image.channels());
 }
 
 void upload(const ParamTexture& source, gpu::Texture& texture) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "framework/base/error.h"
@@ -139,12 +140,11 @@ void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<s
     }
 }
 
-double PipelineRenderer::feed(const FrameInputs& frame, const std::vector<std::string>& roles,
-                              const FrameBefore& before, int first_pass) {
+void PipelineRenderer::feed(const GraphFeed& feed, PendingFrame& pending) {
     gpu::Timer timer(context_);
-    timer.start();
-    built_->feed({{pipeline_, frame, params_, natives_, roles}, before, files_, first_pass});
-    return timer.stop_ms();
+    if (pending.is_timed) timer.start();
+    built_->feed(feed);
+    if (pending.is_timed) pending.uploads.push_back(timer.stop());
 }
 
 int PipelineRenderer::programs_compiled_ahead() const {
@@ -165,6 +165,7 @@ const PipelineStep* step_of(const Pipeline& pipeline, const std::string& pass) {
 void PipelineRenderer::set_hooks() {
     graph::Executor::PassHooks hooks;
     const bool reports = status_ && status_->active();
+    hooks.waits = reports;  // the status names the pass that the GPU draws
     if (reports || built_->ahead)
         hooks.begins = [this, reports](const std::string& pass) {
             const PipelineStep* step = reports ? step_of(pipeline_, pass) : nullptr;
@@ -189,11 +190,11 @@ void PipelineRenderer::require_whole_loops(const std::string& pass) {
                     "loops earlier, or split the work over a pass with \"repeat\"");
 }
 
-void PipelineRenderer::run_passes(bool timed, graph::PassRange range, FrameResult& result) {
+void PipelineRenderer::issue_passes(graph::PassRange range, PendingFrame& pending) {
     const auto observer =
-        options_.audits ? auditor(pipeline_, result.audit) : graph::Executor::PassObserver{};
-    const auto times = built_->executor->run(timed, observer, range);
-    result.times.insert(result.times.end(), times.begin(), times.end());
+        options_.audits ? auditor(pipeline_, pending.result.audit) : graph::Executor::PassObserver{};
+    auto times = built_->executor->issue(pending.is_timed, observer, range);
+    std::ranges::move(times, std::back_inserter(pending.passes));
     if (!status_ || !status_->active()) return;
     WorkStatus between;
     between.frame = status_->current().frame;
@@ -202,6 +203,11 @@ void PipelineRenderer::run_passes(bool timed, graph::PassRange range, FrameResul
 
 FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector<std::string>& roles,
                                      bool timed) {
+    return begin(frame, roles, timed).finish();
+}
+
+PendingFrame PipelineRenderer::begin(const FrameInputs& frame, const std::vector<std::string>& roles,
+                                     bool timed) {
     const bool is_first = frame.subframe == 0;
     mixes_drawn_.clear();
     if (saved_) begin_from_saved(frame);
@@ -209,7 +215,9 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     prepare(frame, roles);
     if (saved_) restore(*std::exchange(saved_, nullptr));
     if (is_first && !frame_fault_.empty()) built_->executor->clear_history();
-    FrameResult result;
+    PendingFrame pending(context_);
+    pending.is_timed = timed;
+    FrameResult& result = pending.result;
     result.messages = natives_.take_messages();
     const float aspect = frame.capture->header.pixel_aspect;
     if (aspect != std::exchange(aspect_, aspect))
@@ -221,17 +229,20 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     if (pipeline_.has_history() && is_first) result.history_reset = frame_fault_;
 
     const bool accumulates = built_->first_single_pass > 0 && frame.subframe_count > 1;
-    double upload_ms = 0;
+    const auto graph_frame = [&](const FrameInputs& inputs) {
+        return GraphFrame{pipeline_, inputs, params_, natives_, roles};
+    };
     if (accumulates) {
         const bool valid = !is_first || frame_fault_.empty();
-        upload_ms +=
-            feed(frame, roles, {valid, valid && last_ ? std::optional(last_->camera) : std::nullopt}, 0);
-        run_passes(timed, {0, built_->first_single_pass}, result);
+        const auto before = valid && last_ ? std::optional(last_->camera) : std::nullopt;
+        feed({graph_frame(frame), {valid, before}, files_, 0}, pending);
+        issue_passes({0, built_->first_single_pass}, pending);
     }
     const CaptureHeader& header = frame.capture->header;
     last_ = {header.frame, header.data_window, header.camera, header.pixel_aspect};
     is_partial_ = accumulates && frame.subframe + 1 < frame.subframe_count;
-    if (is_partial_) return result;
+    pending.is_partial = is_partial_;
+    if (is_partial_) return pending;
 
     FrameInputs once = frame;
     if (accumulates && frame.centre) {
@@ -240,22 +251,19 @@ FrameResult PipelineRenderer::render(const FrameInputs& frame, const std::vector
     }
     const bool valid = frame_fault_.empty();
     const int first_pass = accumulates ? built_->first_single_pass : 0;
-    upload_ms += feed(once, roles, {valid, valid ? camera_before_ : std::nullopt}, first_pass);
+    const auto before = valid ? camera_before_ : std::nullopt;
+    feed({graph_frame(once), {valid, before}, files_, first_pass}, pending);
     camera_before_ = once.capture->header.camera;
     if (options_.audits)
         for (const GraphBinding& binding : built_->bindings)
             if (const auto* input = std::get_if<CaptureBinding>(&binding))
                 audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
-    run_passes(timed, {first_pass, -1}, result);
-    read_results(roles, timed, result);
-    if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
-    if (options_.telemetry) {
-        result.telemetry = read_telemetry(header.frame);
-        result.telemetry->passes = result.times;
-    }
+    issue_passes({first_pass, -1}, pending);
+    begin_reads(roles, pending);
+    if (options_.telemetry) result.telemetry = read_telemetry(header.frame);
     steps_drawn_ = int(pipeline_.steps.size());
     mixes_drawn_ = mixes();
-    return result;
+    return pending;
 }
 
 std::vector<std::string> PipelineRenderer::mixes() const {
@@ -292,18 +300,15 @@ FrameResult PipelineRenderer::render_again(const FrameInputs& frame, const std::
         is_same ? built_->executor->graph().pass_count() : built_->first_pass_of_step[std::size_t(first)];
     // Until it is drawn, nothing stands for these values.
     mixes_drawn_.clear();
-    FrameResult result;
-    result.messages = natives_.take_messages();
-    gpu::Timer timer(context_);
-    timer.start();
-    built_->feed({graph_frame, {false, std::nullopt}, files_, first_pass, true});
-    const double upload_ms = timer.stop_ms();
-    run_passes(timed, {first_pass, -1}, result);
-    read_results(roles, timed, result);
-    if (timed) result.times.insert(result.times.begin(), {"upload", upload_ms});
+    PendingFrame pending(context_);
+    pending.is_timed = timed;
+    pending.result.messages = natives_.take_messages();
+    feed({graph_frame, {false, std::nullopt}, files_, first_pass, true}, pending);
+    issue_passes({first_pass, -1}, pending);
+    begin_reads(roles, pending);
     steps_drawn_ = int(pipeline_.steps.size()) - first;
     mixes_drawn_ = mixes();
-    return result;
+    return pending.finish();
 }
 
 std::string PipelineRenderer::graph_dot() const {

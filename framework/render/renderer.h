@@ -16,29 +16,18 @@
 #include "framework/gpu/buffer.h"
 #include "framework/graph/executor.h"
 #include "framework/look/pipeline.h"
-#include "framework/render/audit.h"
+#include "framework/render/frame_result.h"
 #include "framework/render/native_steps.h"
+#include "framework/render/pending_frame.h"
 #include "framework/render/renderer_options.h"
 #include "framework/render/step_files.h"
-#include "framework/render/telemetry.h"
 
 namespace aftershade {
-
-struct FrameResult {
-    std::map<std::string, Image> images;      ///< by role: what the steps made of the roles asked for
-    std::set<std::string> finite_roles;       ///< of images that were seen to hold no NaN and no infinity
-    std::map<std::string, Image> taps;        ///< by "step.texture"
-    std::vector<graph::PassTime> times;       ///< upload, each pass, readback; empty unless timed
-    std::vector<AuditFinding> audit;          ///< in the order of the passes; empty unless audited
-    std::optional<Window> region;             ///< the part of the display window that was requested
-    std::vector<std::string> messages;        ///< what native code logged
-    std::optional<FrameTelemetry> telemetry;  ///< where it was requested
-    std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
-};
 
 /// A frame graph for one size and one choice of passes (framework/render/built_graph.h).
 struct BuiltGraph;
 struct FrameBefore;
+struct GraphFeed;
 struct SavedHistory;
 
 /// Builds the frame graph on the first frame and again only when something changes that the build looked at:
@@ -66,6 +55,10 @@ public:
     /// step makes them; of sub-frames before the last the result is empty. Frames follow each other in
     /// `frame.capture->header.frame`; anything else restarts history. Throws Error(ErrorKind::effect).
     FrameResult render(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
+    /// The same as far as it needs no waiting: the frame's passes are issued, and its results are on their
+    /// way when PendingFrame::finish() is called. Where transfers are mapped (gpu::ContextInfo), the next
+    /// frame may begin before. Elsewhere finish() comes first.
+    PendingFrame begin(const FrameInputs& frame, const std::vector<std::string>& roles, bool timed);
     /// The last call's frame once more, of which nothing changed but what the pipeline's values give: steps
     /// before the first that differs are not drawn again, if they are kept and no step has a history. The
     /// captures must be the same objects with the same pixels.
@@ -81,6 +74,8 @@ public:
 
     /// Results of these roles are not read back: result_texture() has them, FrameResult::images has not.
     void keep_on_gpu(std::vector<std::string> roles) { kept_on_gpu_ = std::move(roles); }
+    /// Results of these roles are rounded to halfs by whoever takes them, and may come so (gpu::ReadAs).
+    void read_as_halfs(std::vector<std::string> roles) { read_as_halfs_ = std::move(roles); }
     /// The last frame's image of a requested role; nullptr if no step makes it. Valid until the next frame.
     const gpu::Texture* result_texture(const std::string& role) const;
     /// Call after a change of the pipeline that the renderer refers to, unless only values changed that
@@ -118,13 +113,12 @@ private:
     void prepare(const FrameInputs& frame, const std::vector<std::string>& roles);
     void build(const FrameInputs& frame, const std::vector<std::string>& roles, bool primes);
     std::string history_fault(const FrameInputs& frame) const;
-    double feed(const FrameInputs& frame, const std::vector<std::string>& roles, const FrameBefore& before,
-                int first_pass);
+    void feed(const GraphFeed& feed, PendingFrame& pending);
     void set_hooks();
     void require_whole_loops(const std::string& pass);
-    void run_passes(bool timed, graph::PassRange range, FrameResult& result);
+    void issue_passes(graph::PassRange range, PendingFrame& pending);
     FrameTelemetry read_telemetry(int frame) const;
-    void read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result);
+    void begin_reads(const std::vector<std::string>& roles, PendingFrame& pending);
     void begin_from_saved(const FrameInputs& frame);
     void restore(const SavedHistory& saved);
 
@@ -145,7 +139,7 @@ private:
     std::string frame_fault_;              // why this frame restarted history
     std::unique_ptr<SavedHistory> saved_;  // loaded and not yet taken up
     RendererOptions options_;
-    std::vector<std::string> kept_on_gpu_;
+    std::vector<std::string> kept_on_gpu_, read_as_halfs_;
     bool is_stale_ = false;
     int steps_drawn_ = 0;
     std::vector<std::string> mixes_drawn_;  // by step, as a document would write them

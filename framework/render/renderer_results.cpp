@@ -1,5 +1,6 @@
 // What a frame leaves on the GPU: results, taps and numbers about it.
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <span>
 #include <string>
@@ -16,37 +17,33 @@ namespace aftershade {
 
 namespace {
 
-struct ReadImage {
-    Image image;
-    bool is_finite = false;  ///< seen to be
-};
-
-/// Floats of a texture that has as many channels.
-ReadImage read_floats(const gpu::Texture& texture) {
+/// `channels` of a texture of floats; 0, and of integers: as many as it has.
+PendingFrame::Read begin_read(const std::string& name, const gpu::Texture& texture, int channels = 0,
+                              gpu::ReadAs as = gpu::ReadAs::stored) {
     const gpu::TextureDesc& desc = texture.desc();
-    ReadImage read{Image(desc.width, desc.height, gpu::channel_count(desc.format)), true};
-    texture.read_floats(read.image.floats(), [&](std::span<const float> values) {
-        read.is_finite = read.is_finite && are_finite(values);
-    });
-    return read;
+    const bool is_integer = gpu::is_integer(desc.format);
+    if (channels == 0 || is_integer) channels = gpu::channel_count(desc.format);
+    const ComponentType type = is_integer ? ComponentType::uint32 : ComponentType::float32;
+    return {name, false, Image(desc.width, desc.height, channels, type), texture.begin_read(channels, as)};
 }
 
-ReadImage read_back(const gpu::Texture& texture, int channels) {
-    const gpu::TextureDesc& desc = texture.desc();
-    const int stored = gpu::channel_count(desc.format);
-    if (gpu::is_integer(desc.format)) {
-        Image image(desc.width, desc.height, stored, ComponentType::uint32);
-        const auto values = texture.read_uints();
-        std::copy(values.begin(), values.end(), image.uints().begin());
-        return {std::move(image)};
+/// Whether all values were seen to be finite.
+bool fill(PendingFrame::Read& read) {
+    if (read.image.type() == ComponentType::uint32) {
+        read.texels.finish(read.image.uints());
+        return false;
     }
-    if (channels == stored) return read_floats(texture);
-    Image image(desc.width, desc.height, channels);
-    const std::vector<float> values = texture.read_floats();
-    for (std::size_t pixel = 0; pixel < values.size() / std::size_t(stored); ++pixel)
-        std::copy_n(&values[pixel * std::size_t(stored)], channels,
-                    &image.floats()[pixel * std::size_t(channels)]);
-    return {std::move(image)};
+    std::atomic<bool> is_finite = true;
+    read.texels.finish(read.image.floats(), [&](std::span<const float> values) {
+        if (is_finite && !are_finite(values)) is_finite = false;
+    });
+    return is_finite;
+}
+
+Image read_back(const gpu::Texture& texture) {
+    PendingFrame::Read read = begin_read("", texture);
+    fill(read);
+    return std::move(read.image);
 }
 
 }  // namespace
@@ -59,7 +56,7 @@ FrameTelemetry PipelineRenderer::read_telemetry(int frame) const {
     const auto image = [&](const graph::TextureHandle& handle) -> const Image& {
         const auto [found, is_new] = read.try_emplace({handle.texture, handle.version});
         const gpu::Texture& texture = *executor.texture(handle);
-        if (is_new) found->second = read_back(texture, gpu::channel_count(texture.desc().format)).image;
+        if (is_new) found->second = read_back(texture);
         return found->second;
     };
     for (std::size_t i = 0; i < pipeline_.steps.size(); ++i)
@@ -79,25 +76,46 @@ FrameTelemetry PipelineRenderer::read_telemetry(int frame) const {
     return telemetry;
 }
 
-void PipelineRenderer::read_results(const std::vector<std::string>& roles, bool timed, FrameResult& result) {
+void PipelineRenderer::begin_reads(const std::vector<std::string>& roles, PendingFrame& pending) {
     gpu::Timer timer(context_);
-    timer.start();
+    const bool are_issued = context_.info().maps_transfers;
+    if (pending.is_timed && are_issued) timer.start();
     graph::Executor& executor = *built_->executor;
-    const auto is_kept = [&](const std::string& role) {
-        return std::find(kept_on_gpu_.begin(), kept_on_gpu_.end(), role) != kept_on_gpu_.end();
+    const auto has = [](const std::vector<std::string>& list, const std::string& role) {
+        return std::ranges::find(list, role) != list.end();
     };
     for (const std::string& role : roles) {
         const auto handle = built_->results.find(role);
-        if (handle == built_->results.end() || is_kept(role)) continue;
-        ReadImage read = read_back(*executor.texture(handle->second), find_role(role)->channels);
-        result.images[role] = std::move(read.image);
-        if (read.is_finite) result.finite_roles.insert(role);
+        if (handle == built_->results.end() || has(kept_on_gpu_, role)) continue;
+        const auto as = has(read_as_halfs_, role) ? gpu::ReadAs::halfs : gpu::ReadAs::stored;
+        pending.reads.push_back(
+            begin_read(role, *executor.texture(handle->second), find_role(role)->channels, as));
     }
     for (const auto& [tap, handle] : built_->taps) {
-        const gpu::Texture& texture = *executor.texture(handle);
-        result.taps[tap] = read_back(texture, gpu::channel_count(texture.desc().format)).image;
+        pending.reads.push_back(begin_read(tap, *executor.texture(handle)));
+        pending.reads.back().is_tap = true;
     }
-    if (timed) result.times.push_back({"readback", timer.stop_ms()});
+    if (pending.is_timed && are_issued) pending.readback = timer.stop();
+}
+
+FrameResult PendingFrame::finish() {
+    gpu::Timer timer(context_);
+    const bool reads_now = is_timed && !is_partial && !readback;
+    if (reads_now) timer.start();
+    for (Read& read : reads) {
+        const bool is_finite = fill(read);
+        if (is_finite && !read.is_tap) result.finite_roles.insert(read.name);
+        (read.is_tap ? result.taps : result.images)[read.name] = std::move(read.image);
+    }
+    if (reads_now) readback = timer.stop();
+    result.times = measured(std::move(passes));
+    if (!is_timed || is_partial) return std::move(result);
+    double upload_ms = 0;
+    for (gpu::Duration& upload : uploads) upload_ms += upload.ms();
+    result.times.insert(result.times.begin(), {"upload", upload_ms});
+    result.times.push_back({"readback", readback->ms()});
+    if (result.telemetry) result.telemetry->passes = result.times;
+    return std::move(result);
 }
 
 const gpu::Texture* PipelineRenderer::result_texture(const std::string& role) const {

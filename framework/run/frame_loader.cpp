@@ -159,6 +159,19 @@ std::optional<Capture> FrameLoader::outline(std::size_t index) const {
     return capture;
 }
 
+bool FrameLoader::is_read(std::size_t index) const {
+    if (is_missing(index)) return false;
+    const int frame = run_.frames[index];
+    std::vector<int> files{files_.number(frame, 0)};
+    for (const int offset : pipeline_.neighbour_offsets())
+        if (files_.has_neighbour(frame, offset)) files.push_back(files_.neighbour_number(frame, offset));
+    return std::ranges::all_of(files, [&](int file) {
+        const auto read = reads_.find(file);
+        return read != reads_.end() &&
+               read->second.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
+}
+
 void FrameLoader::request(int file) {
     if (reads_.contains(file)) return;
     reads_[file] = std::async(std::launch::async, [this, file]() -> CapturePointer {

@@ -42,6 +42,9 @@ public:
     /// Those of the same shot that some input wants and whose files are there.
     Neighbours neighbours(std::size_t index);
     bool begins_shot(std::size_t index) const;
+    /// Whether the files of the frame's first sub-frame and of its neighbours are there, so that take() and
+    /// neighbours() wait for none of them.
+    bool is_read(std::size_t index) const;
     /// RunOptions::frames_ahead, or the number it stands for once a frame is read; 1 before.
     int frames_ahead() const { return frames_ahead_; }
     /// Objects of the look in the frames that were read so far.

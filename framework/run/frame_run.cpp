@@ -61,8 +61,8 @@ void FrameRun::build_ahead(std::size_t index, const std::vector<std::string>& ro
         renderer_.build_ahead(setting_of(index).inputs(*outline, 0, &*outline), roles);
 }
 
-FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::string>& roles,
-                                    RunReport& report, const RunObserver& observer) {
+FrameRun::Begun FrameRun::begin(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
+                                const RunObserver& observer) {
     FrameSetting setting = setting_of(index);
     setting.neighbours = timed_read(report, [&] { return loader_.neighbours(index); });
     std::vector<std::string> said, differences;
@@ -80,10 +80,18 @@ FrameRun::Rendered FrameRun::render(std::size_t index, const std::vector<std::st
         add_new(said, header.differences);
         return capture;
     };
-    DrawnFrame drawn = draw_frame(renderer_, setting, take, roles);
+    Begun begun;
+    begun.frame = begin_frame(renderer_, setting, take, roles);
+    begun.message = joined(said, "; ", "; ");
+    begun.differences = std::move(differences);
+    return begun;
+}
+
+FrameRun::Rendered FrameRun::finish(Begun begun) const {
+    DrawnFrame drawn = finish_frame(std::move(begun.frame));
     Rendered rendered = finished(std::move(drawn.centre), std::move(drawn.result));
-    rendered.message = joined(said, "; ", "; ");
-    rendered.differences = std::move(differences);
+    rendered.message = std::move(begun.message);
+    rendered.differences = std::move(begun.differences);
     return rendered;
 }
 

@@ -31,9 +31,21 @@ public:
     /// While the frame is read: builds its graph by what its header says, if that is enough. Faults are left
     /// to render(), which meets them in their order.
     void build_ahead(std::size_t index, const std::vector<std::string>& roles);
+    /// A frame whose passes were issued.
+    struct Begun {
+        BegunFrame frame;
+        std::vector<std::string> differences;
+        std::string message;
+    };
+    /// The same as render() in two parts, between which the next frame may begin where transfers are mapped.
+    Begun begin(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
+                const RunObserver& observer);
+    Rendered finish(Begun begun) const;
     /// Reading's faults come as Error(ErrorKind::capture), and so do pixels that NanPolicy::fail refuses.
     Rendered render(std::size_t index, const std::vector<std::string>& roles, RunReport& report,
-                    const RunObserver& observer);
+                    const RunObserver& observer) {
+        return finish(begin(index, roles, report, observer));
+    }
 
 private:
     FrameSetting setting_of(std::size_t index) const;

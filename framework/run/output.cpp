@@ -200,6 +200,17 @@ std::vector<std::string> wanted_roles(const OutputOptions& options, bool makes_d
     return roles;
 }
 
+std::vector<std::string> roles_written_as_halfs(const OutputOptions& options) {
+    const auto is_exr = [](const std::string& pattern) { return extension(pattern) == ".exr"; };
+    if (options.stream_format || options.keep_channels || options.color_type != PixelType::half ||
+        !std::ranges::all_of(options.patterns, is_exr))
+        return {};
+    std::vector<std::string> roles;
+    for (const std::string& role : options.roles)
+        if (find_role(role)->pixel_type == PixelType::half) roles.push_back(role);
+    return roles;
+}
+
 std::vector<fs::path> output_files(const OutputOptions& options, const std::vector<Tap>& taps, int frame) {
     std::vector<fs::path> files;
     for (const std::string& text : options.patterns) files.emplace_back(FramePattern(text).path(frame));

@@ -26,6 +26,9 @@ void check_outputs(const OutputOptions& options, const Sequence& sequence, Input
 /// color where the pipeline may make no display.
 std::vector<std::string> wanted_roles(const OutputOptions& options, bool makes_display = false);
 
+/// Roles of the options that go into half channels of EXR alone.
+std::vector<std::string> roles_written_as_halfs(const OutputOptions& options);
+
 /// The files that write_outputs makes of a frame, in its order.
 std::vector<std::filesystem::path> output_files(const OutputOptions& options, const std::vector<Tap>& taps,
                                                 int frame);

@@ -165,7 +165,10 @@ public:
           loader_(loader),
           frame_run_(renderer, loader_, setup.sequence, setup.options),
           outcomes_(report_, observer),
-          end_gl_(std::move(end_gl)) {
+          end_gl_(std::move(end_gl)),
+          context_(context),
+          // A frame that is refused is reported before the next one is looked at.
+          overlaps_(context.info().maps_transfers && setup.options.on_nan != NanPolicy::fail) {
         report_.gl = context.info();
         report_.clock = gpu::Timer::clock_name(context);
     }
@@ -173,15 +176,21 @@ public:
     RunReport run(const std::atomic<bool>& stop) {
         const auto start = Clock::now();
         const RunOptions& run = setup_.options;
+        // A mended pixel is the mean of floats around it.
+        if (run.on_nan != NanPolicy::mend) renderer_.read_as_halfs(roles_written_as_halfs(setup_.outputs));
         if (!run.frames.empty()) frame_run_.build_ahead(0, wanted());
-        for (std::size_t i = 0; i < run.frames.size(); ++i) {
-            report_.interrupted = stop;
-            if (report_.interrupted || (run.stop_on_error && !report_.failures.empty())) break;
-            frame(i);
+        try {
+            frames(stop);
+        } catch (const Error& error) {
+            // It is not that of the frame before, whose passes were issued.
+            if (error.kind() != ErrorKind::memory) end_frame();
+            throw;
         }
+        end_frame();
         report_.graph_dot = renderer_.graph_dot();
         report_.draws = renderer_.draws();
         std::tie(report_.bytes, report_.bytes_unaliased) = renderer_.graph_bytes();
+        report_.transfers = context_.transfer_use();
         // One of fewer frames would pass for that of the run.
         report_.history_saved = !run.history_out.empty() && any_rendered_ && !report_.interrupted;
         // Frees memory while the last files are packed; a history is saved once they are there.
@@ -198,13 +207,31 @@ public:
     }
 
 private:
+    struct OpenFrame {
+        FrameRun::Begun begun;
+        std::size_t index = 0;
+        int number = 0;
+        Clock::time_point begin;
+    };
+
     std::vector<std::string> wanted() const {
         return wanted_roles(setup_.outputs, setup_.pipeline.writes_role(kDisplayRole));
     }
     bool warms_up(std::size_t index) const { return index < std::size_t(setup_.options.warmup_frames); }
 
+    void frames(const std::atomic<bool>& stop) {
+        const RunOptions& run = setup_.options;
+        for (std::size_t i = 0; i < run.frames.size(); ++i) {
+            report_.interrupted = stop;
+            if (report_.interrupted || (run.stop_on_error && !report_.failures.empty())) break;
+            frame(i);
+        }
+    }
+
     void frame(std::size_t index) {
         const int number = setup_.options.frames[index];
+        // There is time for the frame before.
+        if (!loader_.is_read(index)) end_frame();
         if (skips(loader_, setup_.options, index, observer_)) {
             if (!warms_up(index)) outcomes_.skipped(number);
             return;
@@ -212,24 +239,45 @@ private:
         const auto begin = Clock::now();
         const RunHooks& hooks = setup_.hooks;
         if (hooks.before_frame) hooks.before_frame(number, renderer_);
-        FrameRun::Rendered frame;
+        std::optional<OpenFrame> frame;
         try {
-            frame = frame_run_.render(index, wanted(), report_, observer_);
+            frame = OpenFrame{frame_run_.begin(index, wanted(), report_, observer_), index, number, begin};
         } catch (const Error& error) {
-            if (error.kind() != ErrorKind::memory) finish_writes();
+            if (error.kind() != ErrorKind::memory) {
+                end_frame();
+                finish_writes();
+            }
             if (error.kind() != ErrorKind::capture) throw;
             if (!warms_up(index)) outcomes_.failed(number, error);
             else if (observer_.frame_failed) observer_.frame_failed(error.what());
             if (hooks.frame_failed) hooks.frame_failed(number, renderer_);
             return;
         }
-        report_frame(frame, begin);
-        finish_writes(most_writes() - 1);
-        if (warms_up(index) || (hooks.is_written && !hooks.is_written(number)))
-            report_.frames_unwritten += warms_up(index) ? 0 : 1;
-        else if (accept_outputs(frame, setup_.options.on_nan, report_, observer_, outcomes_))
-            write_later(frame, number, begin);
+        end_frame();
+        open_ = std::move(frame);
+        if (!overlaps_) end_frame();
         if (hooks.after_frame) hooks.after_frame(number, renderer_);
+    }
+
+    /// Collects what the frame that was begun last has made, and reports and writes it.
+    void end_frame() {
+        if (!open_) return;
+        OpenFrame open = std::move(*open_);
+        open_.reset();
+        FrameRun::Rendered frame;
+        try {
+            frame = frame_run_.finish(std::move(open.begun));
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::memory) finish_writes();
+            throw;
+        }
+        report_frame(frame, open.begin);
+        finish_writes(most_writes() - 1);
+        const RunHooks& hooks = setup_.hooks;
+        if (warms_up(open.index) || (hooks.is_written && !hooks.is_written(open.number)))
+            report_.frames_unwritten += warms_up(open.index) ? 0 : 1;
+        else if (accept_outputs(frame, setup_.options.on_nan, report_, observer_, outcomes_))
+            write_later(frame, open.number, open.begin);
     }
 
     void report_frame(const FrameRun::Rendered& frame, Clock::time_point begin) {
@@ -301,6 +349,9 @@ private:
     FrameRun frame_run_;
     Outcomes outcomes_;
     std::function<void()> end_gl_;
+    const gpu::Context& context_;
+    const bool overlaps_;  // the next frame begins before the results of one are collected
+    std::optional<OpenFrame> open_;
     std::deque<PendingWrite> pending_;
     bool any_rendered_ = false;
     bool is_cut_said_ = false;

@@ -24,6 +24,7 @@ struct RunHooks {
     std::function<bool(int frame)> is_written;
     /// After before_frame, of a frame that is written: its OutputOptions::fingerprint.
     std::function<std::string(int frame)> fingerprint;
+    /// Its passes were issued; its results may still be on their way.
     std::function<void(int frame, PipelineRenderer& renderer)> after_frame;
     std::function<void(int frame, PipelineRenderer& renderer)> frame_failed;  ///< it could not be read
     /// Once the files are in place; `seconds` since the frame was begun. [on another thread; one call at a
@@ -50,9 +51,10 @@ struct RunSetup {
     std::function<void()> end_context{};
 };
 
-/// Reads the next frame and writes the last one while the GPU works. A frame that cannot be read, or that
-/// NanPolicy::fail refuses, is reported and left out; an effect or an output that fails, or memory that runs
-/// out, ends the run by its Error. `stop` is looked at between frames.
+/// Reads the next frame and writes the last one while the GPU works. Where transfers are mapped
+/// (gpu::ContextInfo), a frame begins before the results of the one before are collected. A frame that cannot
+/// be read, or that NanPolicy::fail refuses, is reported and left out; an effect or an output that fails, or
+/// memory that runs out, ends the run by its Error. `stop` is looked at between frames.
 RunReport run_frames(const RunSetup& setup, const RunObserver& observer, const std::atomic<bool>& stop);
 
 }  // namespace aftershade

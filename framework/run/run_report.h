@@ -64,6 +64,7 @@ struct RunReport {
     std::vector<DrawnPass> draws;           ///< likewise
     std::uint64_t bytes = 0;                ///< of its textures and buffers
     std::uint64_t bytes_unaliased = 0;      ///< what these would take if none shared memory
+    gpu::TransferUse transfers;             ///< of all frames
 
     bool has_frames() const { return frames_done + frames_unwritten + frames_current > 0; }
     bool is_whole() const { return has_frames() && failures.empty() && !interrupted; }

@@ -1,6 +1,11 @@
-// Whole runs: when they give back what they hold on the GPU, and how far they read and write ahead.
+// Whole runs: when they give back what they hold on the GPU, how far they read and write ahead, and how their
+// frames overlap.
+#include <atomic>
+#include <chrono>
+#include <fstream>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,6 +14,7 @@
 #include "framework/run/run_frames.h"
 #include "tests/backends.h"
 #include "tests/render/effect_fixture.h"
+#include "tests/scoped_variable.h"
 
 namespace aftershade::test {
 namespace {
@@ -75,8 +81,7 @@ protected:
             context.reset();
         };
         setup.hooks = hooks_;
-        const std::atomic<bool> stop = false;
-        report_ = run_frames(setup, observer_, stop);
+        report_ = run_frames(setup, observer_, stop_);
         return endings;
     }
 
@@ -91,7 +96,11 @@ protected:
     RunHooks hooks_;
     RunObserver observer_;
     RunReport report_;
+    std::atomic<bool> stop_ = false;
 };
+
+/// Results that are collected at once, and behind the next frame's passes.
+const std::vector<std::string> kWays = {"direct", "mapped"};
 
 TEST_F(Runs, EndTheContextOnceAfterTheLastFrameAndStillWriteIt) {
     EXPECT_EQ(endings(), 1);
@@ -151,6 +160,125 @@ TEST_F(Runs, KeepTheFramesBeforeOneThatCannotBeWritten) {
     const auto kept = reds();
     for (const int frame : {1, 2, 3}) EXPECT_TRUE(kept.contains(frame)) << frame;
     EXPECT_FALSE(kept.contains(12));
+}
+
+TEST_F(Runs, BeginAFrameBeforeTheyCollectTheOneBeforeWhereTransfersAreMapped) {
+    std::vector<std::string> events;
+    const auto note = [&](const std::string& what, int frame) {
+        events.push_back(what + " " + std::to_string(frame));
+    };
+    observer_.frame_started = [&](const Capture& capture) { note("begins", capture.header.frame); };
+    hooks_.is_written = [&](int frame) {
+        note("is collected", frame);
+        return true;
+    };
+    hooks_.after_frame = [&](int, PipelineRenderer&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the next file is read meanwhile
+    };
+    ScopedVariable way("AFTERSHADE_TRANSFERS");
+    way.set("direct");
+    endings();
+    EXPECT_EQ(events, (std::vector<std::string>{"begins 1", "is collected 1", "begins 2", "is collected 2",
+                                                "begins 3", "is collected 3"}));
+    events.clear();
+    way.set("mapped");
+    endings();
+    EXPECT_EQ(events, (std::vector<std::string>{"begins 1", "begins 2", "is collected 1", "begins 3",
+                                                "is collected 2", "is collected 3"}));
+    EXPECT_GT(report_.transfers.buffer_bytes, 0U);
+    events.clear();
+    options_.on_nan = NanPolicy::fail;  // whether a frame is refused shows before the next one
+    endings();
+    EXPECT_EQ(events[1], "is collected 1");
+}
+
+TEST_F(Runs, GiveTheSameFilesReportsAndHistoryWithEveryWayOfTransfers) {
+    write_frames(12);
+    options_.frames_ahead = 3;
+    options_.missing = MissingFrame::skip;
+    options_.history_out = folder_ / "history";
+    std::filesystem::remove(folder_ / "in_5.exr");
+    std::ofstream(folder_ / "in_9.exr") << "no pixels";
+    ScopedVariable way("AFTERSHADE_TRANSFERS");
+    std::vector<std::map<int, float>> all;
+    std::vector<std::vector<int>> outcomes;
+    std::vector<std::string> histories, saved;
+    for (const std::string& name : kWays) {
+        way.set(name);
+        std::vector<int>& ended = outcomes.emplace_back();
+        observer_.frame_finished = [&](const FrameOutcome& outcome) {
+            if (outcome.kind != FrameOutcome::Kind::skipped) ended.push_back(outcome.frame);
+        };
+        hooks_.after_frame = [&](int frame, PipelineRenderer& renderer) {
+            if (frame == 7) renderer.save_history(folder_ / "seventh");
+        };
+        endings();
+        EXPECT_EQ(report_.failures.size(), 1U);
+        EXPECT_EQ(report_.frames_skipped, 1);
+        EXPECT_EQ(report_.passes.size(), 3U) << "upload, blend.main, readback";
+        for (const PassStatistics& pass : report_.passes) EXPECT_EQ(pass.frames, 10) << pass.pass;
+        all.push_back(reds());
+        histories.push_back(read_text(folder_ / "history"));
+        saved.push_back(read_text(folder_ / "seventh"));
+    }
+    EXPECT_EQ(all[0].size(), 10U);
+    EXPECT_EQ(all[0], all[1]);
+    EXPECT_EQ(outcomes[0], outcomes[1]);
+    EXPECT_EQ(histories[0], histories[1]);
+    EXPECT_EQ(saved[0], saved[1]);
+}
+
+TEST_F(Runs, WriteTheSameHalvesAndWarningsWhetherTheGpuRoundsThemOrTheWriterDoes) {
+    for (const int frame : options_.frames) {
+        const SyntheticScene scene{.width = 200, .height = 100, .background = {30000.7F, 0.1234F, 1e-7F}};
+        write_capture(make_capture(scene, frame), folder_ / ("in_" + std::to_string(frame) + ".exr"));
+    }
+    ScopedVariable way("AFTERSHADE_TRANSFERS");
+    for (const NanPolicy policy : {NanPolicy::warn, NanPolicy::fail, NanPolicy::mend}) {
+        options_.on_nan = policy;
+        std::vector<std::vector<std::string>> files, warnings;
+        for (const std::string& name : kWays) {
+            way.set(name);
+            std::vector<std::string>& said = warnings.emplace_back();
+            observer_.non_finite = [&](const std::string& message) { said.push_back(message); };
+            endings();
+            std::vector<std::string>& written = files.emplace_back();
+            for (const int frame : options_.frames)
+                written.push_back(read_text(folder_ / ("out_" + std::to_string(frame) + ".exr")));
+        }
+        EXPECT_TRUE(files[0] == files[1]);
+        EXPECT_EQ(warnings[0], warnings[1]);
+        ASSERT_EQ(warnings[0].size(), 1U) << "the third frame is above 65504";
+        EXPECT_NE(warnings[0][0].find("the largest half, became infinite"), std::string::npos);
+    }
+}
+
+TEST_F(Runs, WriteEachFrameThatWasBegunWhenTheyAreInterrupted) {
+    write_frames(6);
+    ScopedVariable way("AFTERSHADE_TRANSFERS");
+    for (const std::string& name : kWays) {
+        way.set(name);
+        stop_ = false;
+        observer_.frame_started = [&](const Capture& capture) { stop_ = capture.header.frame == 3; };
+        endings();
+        EXPECT_TRUE(report_.interrupted);
+        EXPECT_EQ(report_.frames_done, 3) << name;
+        EXPECT_EQ(reds(), (std::map<int, float>{{1, 1}, {2, 3}, {3, 6}})) << name;
+    }
+}
+
+TEST_F(Runs, WriteTheFramesBeforeAnErrorWithEveryWayOfTransfers) {
+    write_frames(4);
+    ScopedVariable way("AFTERSHADE_TRANSFERS");
+    for (const std::string& name : kWays) {
+        way.set(name);
+        hooks_.before_frame = [&](int frame, PipelineRenderer&) {
+            if (frame == 4) throw Error(ErrorKind::effect, "the fourth");
+        };
+        EXPECT_THROW(endings(), Error);
+        const auto kept = reds();
+        for (const int frame : {1, 2, 3}) EXPECT_TRUE(kept.contains(frame)) << name << " " << frame;
+    }
 }
 
 }  // namespace

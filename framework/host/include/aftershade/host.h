@@ -15,7 +15,8 @@
 // locale and no signal handler is read or changed, and two Hosts in one process share nothing. Two exceptions
 // are not ours: Mesa reads its own variables (LIBGL_*, MESA_*, GALLIUM_*, LP_*), and a Host whose only
 // software renderer is reached by EGL's surfaceless platform sets LIBGL_ALWAYS_SOFTWARE while its context is
-// made.
+// made. Variables that decide how a GPU is used, and never what is drawn, are read: CUDA_VISIBLE_DEVICES,
+// AFTERSHADE_DRAW_WITH and AFTERSHADE_TRANSFERS.
 #pragma once
 
 #include <cstdint>
