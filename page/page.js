@@ -2,13 +2,17 @@
 import { get, token } from "./api.js";
 import { Costs, Histogram, Probe } from "./dock.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
+import { acceptDrops } from "./drop.js";
 import { ExportDialog } from "./export.js";
+import { Gallery } from "./gallery.js";
 import { Shortcuts } from "./keys.js";
+import { SaveDialog } from "./save_dialog.js";
 import { ShaderView } from "./shader_view.js";
 import { nameOf, StepList } from "./steps.js";
 import { Store } from "./store.js";
 import { AddDialog, Faults, TextView } from "./text_view.js";
 import { short } from "./values.js";
+import { Thumbnails } from "./thumbnails.js";
 import { Viewer } from "./viewer.js";
 import { Waveform } from "./waveform.js";
 
@@ -41,7 +45,10 @@ function pickFor(parameter, commit) {
     });
 }
 const exporting = new ExportDialog(store, viewer);
-const list = new StepList(store, { add: openAdd, pickFor, time: viewer });
+const thumbnails = new Thumbnails(store, viewer);
+const gallery = new Gallery(store, viewer, thumbnails, () => list.focus(0));
+const list = new StepList(store, { add: openAdd, pickFor, time: viewer, gallery });
+acceptDrops(store);
 viewer.addEventListener("frame", () => list.showFrame());
 dialog.node.addEventListener("added", async ({ detail }) => {
   if (!(await detail.done)) return;
@@ -138,8 +145,10 @@ function nextPanel() {
 async function save() {
   if (shaders.node.contains(document.activeElement)) return shaders.save();
   if (store.state.read_only) return notify("The program was started with --read-only", true);
-  if (await store.save()) notify(`Saved ${store.state.look.name}`);
+  const isSaved = store.state.look.has_name ? await store.save() : await saving.open();
+  if (isSaved) notify(`Saved ${store.state.look.name}`);
 }
+const saving = new SaveDialog(store);
 const undoButton = iconButton("undo", "Undo", () => store.undo(), { shortcut: "Ctrl+Z" }),
   redoButton = iconButton("redo", "Redo", () => store.redo(), { shortcut: "Ctrl+Shift+Z" }),
   saveButton = button([icon("save"), "Save"], save, { title: "Save (Ctrl+S)", class: "save" }),
@@ -222,16 +231,16 @@ addEventListener("beforeunload", (event) => store.state && (!store.isSaved || sh
 store.addEventListener("change", () => {
   const { look, capture, can_undo, can_redo, read_only } = store.state,
     isChanged = !store.isSaved;
-  lookName.textContent = look.name;
+  lookName.textContent = look.has_name ? look.name : "untitled";
   lookName.title = look.path;
   captureName.textContent = `${capture.width} × ${capture.height}`;
   captureName.title = capture.path;
-  mark.textContent = read_only ? "read-only" : isChanged ? "unsaved" : "";
+  mark.textContent = read_only ? "read-only" : isChanged ? "unsaved" : look.has_file ? "" : "new";
   mark.classList.toggle("changed", isChanged);
-  document.title = `${isChanged ? "• " : ""}${look.name} – Aftershade`;
+  document.title = `${isChanged ? "• " : ""}${lookName.textContent} – Aftershade`;
   undoButton.disabled = !can_undo;
   redoButton.disabled = !can_redo;
-  saveButton.disabled = read_only || !isChanged;
+  saveButton.disabled = read_only || (!isChanged && look.has_file);
   faults.update();
   viewer.update(); // first: it has the frame that the steps show
   list.update();

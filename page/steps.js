@@ -232,11 +232,12 @@ class StepCard {
 }
 
 export class StepList {
-  /** `time`: {frame, frames, setFrame(frame)} of the scrubber. */
-  constructor(store, { add, pickFor, time }) {
+  /** `time`: {frame, frames, setFrame(frame)} of the scrubber; `gallery`: what a look without steps shows. */
+  constructor(store, { add, pickFor, time, gallery }) {
     this.store = store;
     this.pickFor = pickFor;
     this.time = time;
+    this.gallery = gallery;
     this.cards = [];
     this.opened = new Set();
     this.list = element("ol", { class: "steps", id: "steps", "aria-label": "Steps" });
@@ -249,6 +250,7 @@ export class StepList {
       this.list,
       this.empty,
       button([icon("plus"), "Add a step"], add, { class: "add", title: "Add a step (A)" }),
+      gallery.node,
     );
   }
 
@@ -289,6 +291,7 @@ export class StepList {
     while (this.list.children.length > this.cards.length) this.list.lastChild.remove();
     if (active !== document.activeElement && active?.isConnected) active.focus();
     this.empty.hidden = this.cards.length > 0;
+    this.gallery.show(this.cards.length === 0 && !this.store.state.read_only);
     if (isFirst && this.cards.length) this.cards[0].toggle(true);
     this.hasShown = true;
   }

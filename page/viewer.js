@@ -147,7 +147,9 @@ export class Viewer extends EventTarget {
   update() {
     const { capture, steps } = this.store.state;
     this.picture.setSize(capture.width, capture.height);
-    this.frame ??= capture.frames[0];
+    if (!capture.frames.includes(this.frame)) this.frame = capture.frames[0];
+    if (capture.path !== this.capture) this.pictures.forgetOther();
+    this.capture = capture.path;
     this.frameSlider.max = Math.max(0, capture.frames.length - 1);
     this.frameSlider.disabled = capture.frames.length < 2;
     this.frameCount.textContent = `of ${capture.frames[0]} to ${capture.frames.at(-1)}`;

@@ -214,8 +214,7 @@ const Capture& PictureMaker::whole_capture(int frame) {
     if (!whole_ || whole_frame_ != frame) {
         whole_.reset();
         const int number = sequence_.file_number(frame, sequence_.subframes / 2);
-        const CaptureHeader header = reader_.read_header(number);
-        whole_ = std::make_unique<Capture>(reader_.read(number, header.roles));
+        whole_ = std::make_unique<Capture>(reader_.read(number, header_of(frame).roles));
         whole_frame_ = frame;
     }
     return *whole_;
@@ -225,9 +224,7 @@ const Capture& PictureMaker::truth(int frame, const std::string& name) {
     const std::pair key(frame, name);
     if (!truth_ || truth_key_ != key) {
         truth_.reset();
-        const CaptureHeader header =
-            reader_.read_header(sequence_.file_number(frame, sequence_.subframes / 2));
-        truth_ = std::make_unique<Capture>(read_truth(sequence_, frame, name, header, limits_));
+        truth_ = std::make_unique<Capture>(read_truth(sequence_, frame, name, header_of(frame), limits_));
         truth_key_ = key;
     }
     return *truth_;
@@ -256,6 +253,21 @@ Image PictureMaker::difference(const PictureRequest& request, const std::string&
     apart.images.emplace(kColorRole,
                          absolute_difference(reference.images.at(kColorRole), made_color(request)));
     return view_picture({"before", request.exposure_ev, {}, apart});
+}
+
+CaptureHeader PictureMaker::header_of(int frame) const {
+    return reader_.read_header(sequence_.file_number(frame, sequence_.subframes / 2));
+}
+
+std::string PictureMaker::focused_on_surface(const std::string& text, int frame) {
+    constexpr std::string_view kMiddle = "\"uv\": [0.5, 0.5]";
+    const std::size_t at = text.find(kMiddle);
+    if (at == std::string::npos) return text;
+    const auto place = nearest_surface(whole_capture(frame));
+    if (!place) return text;
+    const auto [u, v] = *place;
+    return text.substr(0, at) + fmt::format("\"uv\": [{:.4g}, {:.4g}]", u, v) +
+           text.substr(at + kMiddle.size());
 }
 
 nlohmann::ordered_json PictureMaker::probe(const PictureRequest& request, int x, int y) {

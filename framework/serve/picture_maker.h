@@ -47,6 +47,10 @@ public:
     const gpu::ContextInfo& gl() const { return context_.info(); }
     /// Throws Error as `run` does.
     MadePicture make(const PictureRequest& request);
+    CaptureHeader header_of(int frame) const;
+    /// A look's text with the middle of the picture, where it focuses on that, replaced by the nearest place
+    /// that shows a surface: the middle may be sky.
+    std::string focused_on_surface(const std::string& text, int frame);
     /// Every role's value at a pixel of the whole picture, and the result's.
     nlohmann::ordered_json probe(const PictureRequest& request, int x, int y);
     /// How many pixels of the final picture have each of 256 values.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -186,6 +187,29 @@ Json result_at(const FrameResult& result, const CaptureHeader& header, int x, in
             return values_at(made->second, place.first, place.second);
     }
     return nullptr;
+}
+
+std::optional<std::pair<double, double>> nearest_surface(const Capture& capture) {
+    const auto depth = capture.images.find(kDepthRole);
+    if (depth == capture.images.end()) return std::nullopt;
+    const Window& window = capture.header.display_window;
+    double least = std::numeric_limits<double>::infinity();
+    std::optional<std::pair<double, double>> nearest;
+    for (int y = 0; y < window.height(); ++y)
+        for (int x = 0; x < window.width(); ++x) {
+            const auto place = place_of(capture.header, x, y);
+            if (!is_inside(depth->second, place) ||
+                !std::isfinite(depth->second.at(place.first, place.second, 0)))
+                continue;
+            const auto side = [](int at, int size) { return at == size / 2 ? 0.5 : (at + 0.5) / size; };
+            const double u = side(x, window.width()), v = side(y, window.height());
+            const double distance = std::hypot(u - 0.5, v - 0.5);
+            if (distance < least) {
+                least = distance;
+                nearest = {u, v};
+            }
+        }
+    return nearest;
 }
 
 Json histogram_json(const Image& picture) {

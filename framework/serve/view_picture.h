@@ -2,7 +2,9 @@
 // colour; and their numbers.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -38,6 +40,10 @@ std::string unit_of_role(const std::string& role);
 nlohmann::ordered_json probe_json(const Capture& capture, int x, int y);
 /// [r, g, b, a] of what the steps made, or null where they made nothing there.
 nlohmann::ordered_json result_at(const FrameResult& result, const CaptureHeader& header, int x, int y);
+
+/// The place of the display window nearest to its middle whose depth is finite, from 0 to 1 right and down;
+/// nullopt without any.
+std::optional<std::pair<double, double>> nearest_surface(const Capture& capture);
 
 nlohmann::ordered_json histogram_json(const Image& picture);
 
