@@ -1,4 +1,5 @@
 // The authoring page: a look made by eye. The program that serves it holds the look and draws the pictures.
+import { AddDialog } from "./add_dialog.js";
 import { get, token } from "./api.js";
 import { Costs, Histogram, Probe } from "./dock.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
@@ -6,11 +7,13 @@ import { acceptDrops } from "./drop.js";
 import { ExportDialog } from "./export.js";
 import { Gallery } from "./gallery.js";
 import { Shortcuts } from "./keys.js";
+import { keyOf, objectAt, ObjectDialog, ObjectNames } from "./objects.js";
 import { SaveDialog } from "./save_dialog.js";
 import { ShaderView } from "./shader_view.js";
+import { sourceOf } from "./source.js";
 import { nameOf, StepList } from "./steps.js";
 import { Store } from "./store.js";
-import { AddDialog, Faults, TextView } from "./text_view.js";
+import { Faults, TextView } from "./text_view.js";
 import { short } from "./values.js";
 import { Thumbnails } from "./thumbnails.js";
 import { Viewer } from "./viewer.js";
@@ -28,28 +31,53 @@ const probe = new Probe(),
   costs = new Costs();
 at("dock").append(probe.node, histogram.node, waveform.node, costs.node);
 
-const dialog = new AddDialog(store);
+const thumbnails = new Thumbnails(store, viewer);
+const dialog = new AddDialog(store, thumbnails);
 const openAdd = () => dialog.open(store.lastPlace);
 
-/** A parameter that the picture can give: the focus distance from the depth, objects from the ids. */
-function pickFor(parameter, commit) {
-  const role = parameter.from === "camera.focus_distance" ? "depth" : parameter.type === "objects" ? "object_id" : null;
-  if (!role) return null;
-  return (node) =>
-    viewer.pick(node, ({ roles }) => {
-      const value = roles.find(({ name }) => name === role)?.values[0];
-      if (value === undefined || !Number.isFinite(value))
-        return notify(`The capture has no ${role} at this pixel`, true);
-      if (role === "object_id") return commit([value]);
-      commit(Number(short(value)));
-    });
+const names = new ObjectNames(store, viewer),
+  objectDialog = new ObjectDialog(names);
+const objects = {
+  names,
+  pick: (node, take) =>
+    viewer.pick(node, (pixel) => {
+      const found = objectAt(pixel) ?? pixel.objects[0];
+      if (!found) return notify("The capture has no objects at this pixel", true);
+      take(keyOf(found));
+    }),
+  choose: (take) => objectDialog.open(take),
+};
+
+/**
+ * What the frame can give a parameter: the depth of an object or a point for a focus, its light for an exposure, an object
+ * for a list of such. null for other parameters.
+ */
+function pickFor(parameter) {
+  if (parameter.type === "objects") return { click: (node, take) => objects.pick(node, (key) => take([key])) };
+  const isFocus = parameter.from === "camera.focus_distance",
+    isExposure = parameter.unit === "ev" && parameter.type === "float" && parameter.bind !== "define";
+  if (!isFocus && !isExposure) return null;
+  const fromPixel = (pixel, take) => {
+    const found = pixel.isPoint ? null : objectAt(pixel);
+    if (found) return take(sourceOf(parameter, keyOf(found)));
+    const { width, height } = store.state.capture,
+      uv = [(pixel.x + 0.5) / width, (pixel.y + 0.5) / height].map((place) => Number(place.toFixed(4)));
+    if (isExposure) return take({ from: "luminance", uv });
+    const depth = pixel.roles.find(({ name }) => name === "depth")?.values[0];
+    if (!Number.isFinite(depth)) return notify("The capture has no depth at this pixel", true);
+    take(Number(short(depth)));
+  };
+  return {
+    click: (node, take) => viewer.pick(node, (pixel) => fromPixel(pixel, take)),
+    choose: (take) => objects.choose((key) => take(sourceOf(parameter, key))),
+  };
 }
 const exporting = new ExportDialog(store, viewer);
-const thumbnails = new Thumbnails(store, viewer);
 const gallery = new Gallery(store, viewer, thumbnails, () => list.focus(0));
-const list = new StepList(store, { add: openAdd, pickFor, time: viewer, gallery });
+const list = new StepList(store, { add: openAdd, pickFor, objects, time: viewer, gallery });
 acceptDrops(store);
 viewer.addEventListener("frame", () => list.showFrame());
+dialog.node.addEventListener("close", () => list.update()); // its pictures stopped those of the gallery
 dialog.node.addEventListener("added", async ({ detail }) => {
   if (!(await detail.done)) return;
   list.cards[detail.at]?.toggle(true);
@@ -252,6 +280,8 @@ let measuring;
 viewer.addEventListener("picture", ({ detail }) => {
   costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   shaders.setFault("");
+  viewer.setMeasured(detail.times);
+  list.showFrame();
   if (detail.isCoarse) return;
   list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;

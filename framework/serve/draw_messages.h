@@ -18,7 +18,8 @@ struct DrawRequest {
         histogram,
         metrics,
         thumbnail,  ///< a picture of a text that is not the look's
-        starts      ///< the starting looks, for this frame
+        starts,     ///< the starting looks, for this frame
+        objects     ///< the names of what the frame shows
     };
     Kind kind = Kind::picture;
     std::string capture;             ///< CAPTURE of the command line; "" for the process's own

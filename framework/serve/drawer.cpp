@@ -93,6 +93,7 @@ Response starts(const DrawRequest& request, const std::filesystem::path& data, E
 Response answer(const DrawRequest& request, const ServeOptions& options, Looks& looks, PictureMaker& maker) {
     if (request.kind == DrawRequest::Kind::starts)
         return starts(request, options.data_folder, *looks.effects_of(request.effects_revision), maker);
+    if (request.kind == DrawRequest::Kind::objects) return json_response(maker.objects(request.frame));
     const PictureRequest wanted{looks.of(request), request.frame,       request.scale,
                                 request.view,      request.exposure_ev, request.continues};
     switch (request.kind) {
@@ -100,6 +101,7 @@ Response answer(const DrawRequest& request, const ServeOptions& options, Looks& 
         case DrawRequest::Kind::histogram: return json_response(maker.histogram(wanted));
         case DrawRequest::Kind::metrics: return json_response(maker.metrics(wanted, request.truth));
         case DrawRequest::Kind::starts:
+        case DrawRequest::Kind::objects:
         case DrawRequest::Kind::thumbnail:
         case DrawRequest::Kind::picture: break;
     }

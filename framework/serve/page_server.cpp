@@ -280,6 +280,8 @@ void PageServer::answer(const Request& request, const Reply& reply) {
           }}},
         {"/api/thumbnail", {"POST", [&] { setup_.thumbnails.run(thumbnail(request), reply); }}},
         {"/api/starts", {"GET", [&] { setup_.thumbnails.run(starts(request), reply); }}},
+        {"/api/objects",
+         {"GET", [&] { setup_.thumbnails.run(place_of(request, DrawRequest::Kind::objects), reply); }}},
         {"/api/capture", {"POST", now([&] { return take_capture(request); })}},
         {"/api/probe", {"GET", drawn([&] { return probe(request); })}},
         {"/api/histogram", {"GET", drawn([&] { return request_of(request, DrawRequest::Kind::histogram); })}},

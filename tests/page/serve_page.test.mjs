@@ -353,7 +353,7 @@ inPage("adds a step that is found by a word of its summary", async (page) => {
   const before = await textOf(page);
   await page.keyboard.press("a");
   await page.keyboard.type("grain");
-  const found = await page.locator("#found li").evaluateAll((nodes) => nodes.map((node) => node.dataset.effect));
+  const found = await page.locator("#found [role=option]").evaluateAll((nodes) => nodes.map((node) => node.dataset.effect));
   assert.equal(found[0], "film_grain");
   await page.getByLabel("Search effects by name and summary").fill("fireflies zzz");
   assert.equal(await page.getByText("No effect matches.").isVisible(), true);
@@ -685,12 +685,22 @@ inPage("sets the focus distance by a click in the picture", async (page) => {
   const box = await page.locator(".stage canvas").boundingBox();
   await page.mouse.click(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
   const look = await changed(page, before);
-  const depth = await page.evaluate(
-    () =>
-      [...document.querySelectorAll(".panel tbody tr")].find((node) => node.cells[0].textContent === "depth")?.cells[1]
-        .textContent,
-  );
-  assert.equal(parseFloat(look.steps[0].params.focus_distance), Number(depth));
+  const cell = (role) =>
+    page.evaluate(
+      (name) =>
+        [...document.querySelectorAll(".panel tbody tr")].find((node) => node.cells[0].textContent === name)?.cells[1]
+          .textContent,
+      role,
+    );
+  assert.deepEqual(look.steps[0].params.focus_distance, { from: "depth", object: Number(await cell("object_id")) });
+  // With Shift, the focus is at the point.
+  const followed = await textOf(page);
+  await focus.getByRole("button", { name: /^Pick/ }).click();
+  await page.keyboard.down("Shift");
+  await page.mouse.click(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
+  await page.keyboard.up("Shift");
+  const point = await changed(page, followed);
+  assert.equal(point.steps[0].params.focus_distance, Number(await cell("depth")));
 });
 
 inPage("plots the histogram of the final picture", async (page) => {
@@ -1361,7 +1371,8 @@ inPage("can be used by the keyboard alone, with the focus in sight", async (page
     "Remove",
   ];
   for (const label of wanted) assert.ok(seen.has(label), `${label} in ${[...seen]}`);
-  // A step is added, moved, opened, changed and saved.
+  // A step is added, moved, opened, changed and saved; a letter in a field is text.
+  while (await page.evaluate(() => document.activeElement.matches("input[type=text]"))) await page.keyboard.press("Tab");
   await page.keyboard.press("s");
   await page.keyboard.press("a");
   await page.keyboard.type("sharpen");
