@@ -6,12 +6,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "aftershade/host.h"
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
 #include "cli/profile_report.h"
 #include "cli/verbs.h"
-#include "framework/base/data_path.h"
+#include "framework/effect/description.h"
 
 namespace aftershade::cli {
 
@@ -41,26 +40,29 @@ ExitCode list_profiles(bool as_json) {
 ExitCode list(const ListOptions& options) {
     if (options.profiles) return list_profiles(options.json);
     Diagnostics diagnostics;
-    check_effect_paths(options.effect_paths, diagnostics);
+    EffectRegistry effects = find_effects(options.effect_paths, diagnostics);
     stop_at_errors(diagnostics);
-    diagnostics.print(std::cerr);
-    const host::Host host(
-        {.data = data_path(), .effect_paths = {options.effect_paths.begin(), options.effect_paths.end()}});
-    std::vector<host::Diagnostic> faults;
+    std::vector<const EffectManifest*> manifests;
+    for (const std::string& id : effects.ids()) {
+        const int errors_before = diagnostics.error_count();
+        const EffectManifest* manifest = effects.find(id, diagnostics);
+        if (manifest && diagnostics.error_count() == errors_before) manifests.push_back(manifest);
+    }
     nlohmann::ordered_json document = nlohmann::ordered_json::array();
-    for (const host::EffectInfo& effect : host.effects(&faults)) {
-        if (!options.json) fmt::print("{:<22} {:<8} {}\n", effect.id, effect.version, effect.summary);
-        document.push_back({{"id", effect.id},
-                            {"version", effect.version},
-                            {"summary", effect.summary},
-                            {"folder", effect.folder}});
+    for (const EffectManifest* effect : in_groups(manifests)) {
+        const std::string group = effect->group + (effect->is_recommended ? ", recommended" : "");
+        if (!options.json)
+            fmt::print("{:<22} {:<8} {:<24} {}\n", effect->id, effect->version, group, effect->summary);
+        document.push_back({{"id", effect->id},
+                            {"version", effect->version},
+                            {"group", effect->group},
+                            {"recommended", effect->is_recommended},
+                            {"summary", effect->summary},
+                            {"folder", effect->folder.string()}});
     }
     if (options.json) fmt::print("{}\n", document.dump(2));
-    for (const host::Diagnostic& fault : faults) std::cerr << host::to_string(fault) << "\n";
-    const auto is_error = [](const host::Diagnostic& fault) {
-        return fault.severity == host::Severity::error;
-    };
-    return std::ranges::any_of(faults, is_error) ? ExitCode::usage : ExitCode::done;
+    diagnostics.print(std::cerr);
+    return diagnostics.has_errors() ? ExitCode::usage : ExitCode::done;
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "aftershade/error.h"
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
+#include "cli/first_steps.h"
 #include "cli/help_formatter.h"
 #include "cli/number_options.h"
 #include "cli/plugin_options.h"
@@ -204,6 +205,9 @@ int main(int argc, char** argv) {
         const ExitCode code = keeps_idiffs_codes() ? aftershade::cli::kCompareUsage : ExitCode::usage;
         if (const std::string fault = unknown_command(app, argc, argv); !fault.empty())
             return fail(code, fault.c_str());
+        if (const CLI::App* run = app.get_subcommand("run");
+            run->parsed() && aftershade::cli::print_first_steps(*run))
+            return end(int(code));
         app.exit(error);
         std::vector<std::string> names;
         for (const auto& [verb, run] : verbs) names.push_back(verb->get_name());

@@ -1,6 +1,7 @@
 #include "framework/serve/serve_look.h"
 
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -19,6 +21,7 @@
 #include "cli/capture_options.h"
 #include "cli/command_line.h"
 #include "cli/effect_options.h"
+#include "cli/first_steps.h"
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
 #include "cli/plugin_options.h"
@@ -95,8 +98,10 @@ private:
     std::string file_;
 };
 
-/// Set for the process that draws, which has the command line of the one that speaks HTTP.
+/// Set for a process that draws, which has the command line of the one that speaks HTTP.
 constexpr const char* kDrawsVariable = "AFTERSHADE_SERVE_DRAWS";
+/// Its value in the process that draws thumbnails.
+constexpr const char* kThumbnails = "thumbnails";
 
 serve::DrawerEnd end_of(const WorkerResult& result, const Watchdog& watchdog) {
     if (watchdog.barked()) {
@@ -109,12 +114,13 @@ serve::DrawerEnd end_of(const WorkerResult& result, const Watchdog& watchdog) {
     return {describe(result), result.status.step, false, is_memory ? ErrorKind::memory : ErrorKind::effect};
 }
 
-/// Runs this command once more as the process that draws, until `stop` at the latest.
-serve::DrawerEnd run_drawer(int socket, PassLimit limit, bool read_only, const std::atomic<bool>& stop) {
+/// Runs this command once more as a process that draws, until `stop` at the latest.
+serve::DrawerEnd run_drawer(const char* what, int socket, PassLimit limit, bool read_only,
+                            const std::atomic<bool>& stop) {
     WorkerCommand command;
     command.arguments = own_arguments();
     command.arguments[0] = "/proc/self/exe";
-    command.environment[kDrawsVariable] = "1";
+    command.environment[kDrawsVariable] = what;
     if (read_only)  // whose promise covers the caches of compiled shaders: ours, Mesa's and NVIDIA's
         for (const auto& [name, value] : {std::pair{"AFTERSHADE_CACHE", "off"},
                                           {"MESA_SHADER_CACHE_DISABLE", "true"},
@@ -134,35 +140,97 @@ serve::DrawerEnd run_drawer(int socket, PassLimit limit, bool read_only, const s
     return end;
 }
 
-ExitCode serve(const ServeArguments& arguments) {
-    const bool draws = std::getenv(kDrawsVariable) != nullptr;
-    share_one_heap();
-    Diagnostics diagnostics;
-    if (!draws) find_effects(arguments.effect_paths, diagnostics);  // for its faults and warnings
-    const std::vector<Profile> profiles = load_profiles(arguments.capture.profile_paths, diagnostics);
-    const auto sequence = find_sequence(arguments.capture, profiles, diagnostics);
-    stop_at_errors(diagnostics);
+/// The words as they are meant: a single one is the capture.
+ServeArguments completed(ServeArguments arguments) {
+    if (!arguments.capture.capture.empty()) return arguments;
+    if (arguments.look.empty())
+        throw Error(ErrorKind::usage, "CAPTURE is missing: aftershade serve [LOOK] CAPTURE");
+    if (names_look(arguments.look))
+        throw Error(ErrorKind::usage, "CAPTURE is missing behind the look '" + arguments.look +
+                                          "': aftershade serve " + arguments.look + " CAPTURE");
+    arguments.capture.capture = std::exchange(arguments.look, "");
+    return arguments;
+}
+
+serve::LookModel::File kind_of_file(const std::string& look) {
+    using File = serve::LookModel::File;
+    if (look.empty()) return File::unnamed;
+    std::error_code failure;
+    if (std::filesystem::symlink_status(look, failure).type() != std::filesystem::file_type::not_found)
+        return File::there;
+    const std::filesystem::path folder = std::filesystem::absolute(look).parent_path();
+    if (!look.ends_with(".json"))
+        throw Error(ErrorKind::usage, look + ": no such file; a new look's name ends in .json");
+    if (!std::filesystem::is_directory(folder, failure))
+        throw Error(ErrorKind::usage, look + ": there is no folder " + folder.string() + " to make it in");
+    return File::fresh;
+}
+
+/// Of another capture than the command's: without the frames and files that the command names for its own.
+Sequence open_sequence(CaptureOptions options, const std::string& capture,
+                       const std::vector<Profile>& profiles) {
+    if (capture != options.capture) {
+        options.capture = capture;
+        options.frames.clear();
+        options.role_files.clear();
+    }
+    Diagnostics faults;
+    auto sequence = find_sequence(options, profiles, faults);
+    if (!sequence || faults.has_errors()) {
+        std::ostringstream text;
+        faults.print(text);
+        throw Error(ErrorKind::capture, text.str());
+    }
+    return std::move(*sequence);
+}
+
+serve::ServeOptions serve_options(const ServeArguments& arguments, Diagnostics& diagnostics) {
     serve::ServeOptions options;
-    options.look = arguments.look;
+    options.profiles = load_profiles(arguments.capture.profile_paths, diagnostics);
+    find_sequence(arguments.capture, options.profiles, diagnostics);  // for its faults, beside the others'
+    stop_at_errors(diagnostics);
+    options.look = arguments.look.empty() ? "untitled.json" : arguments.look;
+    options.look_file = kind_of_file(arguments.look);
     options.capture = arguments.capture.capture;
-    options.sequence = *sequence;
-    options.profiles = profiles;
+    options.open_sequence = [capture = arguments.capture, profiles = options.profiles](
+                                const std::string& name) { return open_sequence(capture, name, profiles); };
     options.limits = arguments.capture.limits;
     options.gl = chosen_gl(arguments.gl);
-    options.drawn_by = warn_of_software;
     options.data_folder = data_path();
     options.effect_folders.assign(arguments.effect_paths.begin(), arguments.effect_paths.end());
     options.port = arguments.port;
     options.read_only = arguments.read_only;
-    if (draws) {
-        serve::draw_for(options, STDIN_FILENO);
-        return ExitCode::done;
-    }
+    return options;
+}
+
+/// The work of a process that draws, which ends with its socket.
+ExitCode draw(serve::ServeOptions& options, bool is_for_thumbnails) {
+    constexpr int kLeastUrgent = 19;
+    if (is_for_thumbnails) setpriority(PRIO_PROCESS, 0, kLeastUrgent);
+    else options.drawn_by = warn_of_software;
+    serve::draw_for(options, STDIN_FILENO);
+    return ExitCode::done;
+}
+
+ExitCode serve(const ServeArguments& words) {
+    const char* const draws = std::getenv(kDrawsVariable);
+    share_one_heap();
+    const ServeArguments arguments = completed(words);
+    Diagnostics diagnostics;
+    if (!draws) find_effects(arguments.effect_paths, diagnostics);  // for its faults and warnings
+    serve::ServeOptions options = serve_options(arguments, diagnostics);
+    if (draws) return draw(options, std::string_view(draws) == kThumbnails);
     diagnostics.print(std::cerr);
     const std::atomic<bool>& stop = watch_for_interrupt();
-    options.run_drawer = [&](int socket) {
-        return run_drawer(socket, arguments.limits.pass_limit(), arguments.read_only, stop);
+    const auto runner = [&](const char* what) {
+        return [&arguments, &stop, what](int socket) {
+            return run_drawer(what, socket, arguments.limits.pass_limit(), arguments.read_only, stop);
+        };
     };
+    options.run_drawer = runner("1");
+    options.run_thumbnail_drawer = runner(kThumbnails);
+    if (options.look_file == serve::LookModel::File::fresh)
+        std::cerr << arguments.look << ": the page makes it when it saves\n";
     std::optional<OpenedBrowser> browser;
     options.ready = [&](const std::string& address) {
         std::cout << address << std::endl;
@@ -178,8 +246,10 @@ ExitCode serve(const ServeArguments& arguments) {
 
 Verb add_serve(CLI::App& app) {
     auto arguments = std::make_shared<ServeArguments>();
-    app.add_option("look", arguments->look, "The look that the page shows and saves")->required();
-    add_capture_argument(app, arguments->capture);
+    app.add_option("look", arguments->look,
+                   "The look that the page shows and saves; without one it begins without steps, and the "
+                   "first save needs a name");
+    add_capture_argument(app, arguments->capture)->required(false);
     app.add_option("--port", arguments->port, "Port of 127.0.0.1; 0 takes a free one")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();

@@ -49,10 +49,6 @@ std::string slip_hint(const std::vector<std::string>& words, const std::vector<s
             return "a file whose name begins with - is written with ./ before it: ./" + word;
     const std::vector<std::string> pictures = pictures_of(words);
     const bool takes_look = words.front() == "run" || words.front() == "serve";
-    const bool names_look = std::ranges::any_of(words, [](const auto& w) { return w.ends_with(".json"); });
-    if (takes_look && pictures.size() == 1 && !names_look)
-        return "the look comes before the capture: aftershade " + words.front() + " look.json " +
-               pictures.front() + (words.front() == "run" ? " -o out.exr" : "");
     if ((takes_look || words.front() == "inspect") && pictures.size() > 1)
         if (const std::string pattern = frame_pattern(pictures.front()); !pattern.empty())
             return "a sequence is one pattern, in quotes, so that the shell does not expand it: '" + pattern +

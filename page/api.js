@@ -46,16 +46,21 @@ export const post = async (path, body = {}) =>
     await request(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) })
   ).json();
 
+const bitmapOf = async (response) =>
+  createImageBitmap(await response.blob(), { premultiplyAlpha: "none", colorSpaceConversion: "none" });
+
 /** {bitmap, times}: a picture and what it cost. */
 export async function picture(values, signal) {
   const response = await request(query("/api/picture", values), { signal });
   const times = JSON.parse(response.headers.get("X-Aftershade-Times") ?? "null");
-  const bitmap = await createImageBitmap(await response.blob(), {
-    premultiplyAlpha: "none",
-    colorSpaceConversion: "none",
-  });
-  return { bitmap, times };
+  return { bitmap: await bitmapOf(response), times };
 }
+
+/** A small picture of the look as it would be after `edits`. */
+export const thumbnail = async (frame, edits, signal) =>
+  bitmapOf(
+    await request(query("/api/thumbnail", { frame }), { method: "POST", body: JSON.stringify({ edits }), signal }),
+  );
 
 /** The PNG itself. */
 export const pictureBlob = async (values) => (await request(query("/api/picture", values))).blob();

@@ -5,6 +5,7 @@ import { canBeKeyed, isKeyed, keysOf, numbersAt, numbersOf, withKeys } from "./k
 import { field, numberControl } from "./number.js";
 import { tableControl } from "./objects_table.js";
 import { profileControl } from "./profile.js";
+import { isPixelSource, rackControl, sourceControl } from "./source.js";
 import * as values from "./values.js";
 import { variableControl } from "./variables.js";
 
@@ -71,6 +72,29 @@ function vectorControl({ label, parameter, describedBy, commit }) {
   };
 }
 
+/** Objects by their names; the button adds one of the frame's. */
+function objectsControl({ label, describedBy, commit, objects }) {
+  let value = [];
+  const { node, show } = field({
+    label,
+    describedBy,
+    className: "field text",
+    parse: (text) => ({ value: values.objectsFrom(text) }),
+    commit,
+  });
+  const chooser = iconButton("list", `Choose objects of ${label} from a list`, () =>
+    objects.choose((key) => commit([...value.filter((one) => one !== key), key])),
+  );
+  return {
+    nodes: [element("span", { class: "wide vector" }, node, chooser)],
+    update(entry) {
+      const now = entry.value ?? entry.effective ?? "";
+      value = Array.isArray(now) ? now : [];
+      show(values.objectsText(now, objects.names.words));
+    },
+  };
+}
+
 function textControl({ label, describedBy, commit }, toText, parse) {
   const { node, show } = field({ label, describedBy, className: "field wide text", parse, commit });
   return { nodes: [node], update: (entry) => show(toText(entry.value ?? entry.effective ?? "")) };
@@ -89,8 +113,7 @@ function controlFor(context) {
   if (values.isVector(parameter.type)) return vectorControl(context);
   if (parameter.type === "bool") return boolControl(context);
   if (parameter.type === "enum") return enumControl(context);
-  if (parameter.type === "objects")
-    return textControl(context, values.objectsText, (text) => ({ value: values.objectsFrom(text) }));
+  if (parameter.type === "objects") return objectsControl(context);
   if (parameter.type === "file") return textControl(context, values.asText, (text) => ({ value: text.trim() }));
   if (parameter.type === "table") return tableControl(context);
   if (parameter.type === "scattering_profile") return profileControl(context);
@@ -111,10 +134,11 @@ function rangeWords({ type, ui, min, max, unit = "", default: fallback }) {
 
 /**
  * {node, update(entry)} of a parameter. `commit(value, gesture)` sets it, null takes the key out of the look; `pick`, if
- * given, has the next click in the picture set it. `time` is the scrubber, for keys;
- * `variables`: {names(), value(name)} of the look. `pickObject(node, take)` gives the id of the next click in the picture.
+ * given, {click(node, take), choose(take)}: the next click in the picture or a choice from the list of objects sets it.
+ * `time` is the scrubber, for keys; `variables`: {names(), value(name)} of the look; `objects`: {names, pick(node, take),
+ * choose(take)} of the frame; `measured()` the number that the last picture took from the frame.
  */
-export function parameterRow({ id, parameter, commit, pick, time, variables, pickObject }) {
+export function parameterRow({ id, parameter, commit, pick, time, variables, objects, measured }) {
   const describedBy = freshId("doc"),
     label = id.replaceAll("_", " "),
     holder = element("div", { class: "controls" }),
@@ -123,10 +147,12 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, pic
     reset = iconButton("reset", `Reset ${label}`, () => commit(null), { class: "icon-button reset" });
   const picker =
     pick &&
-    iconButton("pick", `Pick ${label} in the picture`, () => pick(picker), {
+    iconButton("pick", `Pick ${label} in the picture`, () => pick.click(picker, take), {
       class: "icon-button picker",
       "aria-pressed": "false",
     });
+  const chooser =
+    pick?.choose && iconButton("list", `Choose the object of ${label} from a list`, () => pick.choose(take));
   const key =
     canBeKeyed(parameter) && iconButton("keys", `Key ${label}`, () => toggleKey(), { class: "icon-button key" });
   const node = element(
@@ -136,6 +162,7 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, pic
       "span",
       { class: "label", title: parameter.doc },
       element("span", { class: "words" }, label),
+      chooser || null,
       picker || null,
     ),
     holder,
@@ -151,6 +178,12 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, pic
     kind = null,
     entry = {};
   const hasKeyNow = () => isKeyed(entry.value) && String(time.frame) in entry.value.keys;
+  /** A value that was picked: the value of this frame where there are keys. */
+  function take(value) {
+    if (!isKeyed(entry.value)) return commit(value);
+    const { frame } = time;
+    commit(withKeys(entry.value, [...keysOf(entry.value).filter(([at]) => at !== frame), [frame, value]]));
+  }
   /** Adds a key at the scrubber's frame, or takes that frame's key out; the last one leaves its value. */
   function toggleKey() {
     const { frame } = time,
@@ -160,15 +193,21 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, pic
         // Of a step that is disabled the program gives an expression as it is written.
         found = values.isExpression(effective) ? variables.value(effective.var) : effective,
         now = value === undefined || values.isExpression(value) ? (found ?? parameter.default) : value;
-      return commit({ keys: { [frame]: now } });
+      // A focus that goes from one object to another eases out of the first and into the second.
+      return commit(
+        isPixelSource(value) ? { keys: { [frame]: value }, interpolation: "smooth" } : { keys: { [frame]: now } },
+      );
     }
     const rest = keysOf(value).filter(([at]) => at !== frame);
     if (rest.length < keysOf(value).length) return commit(rest.length ? withKeys(value, rest) : value.keys[frame]);
+    if (kindOf(entry) === "rack") return commit(withKeys(value, [...rest, [frame, nearestKey(rest, frame)]]));
     const style = rest[0][1],
       numbers = numbersAt(value, frame, parameter).map((number) => Number(number.toPrecision(6)));
     const now = Array.isArray(style) ? numbers : values.literal(numbers[0], parameter, style);
     commit(withKeys(value, [...rest, [frame, now]]));
   }
+  const nearestKey = (keys, frame) =>
+    keys.reduce((best, one) => (Math.abs(one[0] - frame) < Math.abs(best[0] - frame) ? one : best))[1];
   function showFrame() {
     control?.showFrame?.();
     if (!key) return;
@@ -178,12 +217,17 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, pic
     key.title = isKey ? `Remove the key at frame ${time.frame}` : `Key this value at frame ${time.frame}`;
   }
   const kindOf = ({ value }) => {
-    if (isKeyed(value) && canBeKeyed(parameter) && numbersOf(keysOf(value)[0][1]).every(Number.isFinite)) return "keys";
+    const keys = isKeyed(value) && canBeKeyed(parameter) ? keysOf(value).map(([, one]) => one) : [];
+    if (keys.some(isPixelSource)) return "rack";
+    if (keys.length && keys.every((one) => numbersOf(one).every(Number.isFinite))) return "keys";
+    if (isPixelSource(value)) return "source";
     if (typeof value?.var === "string") return "variable";
     return values.isExpression(value) ? "expression" : parameter.type;
   };
   const makers = {
     keys: curveControl,
+    source: sourceControl,
+    rack: rackControl,
     variable: (context) => variableControl({ ...context, unit: parameter.unit }),
     expression: (context) => textControl(context, values.asText, anyValue),
   };
@@ -195,7 +239,16 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, pic
       const wanted = kindOf(entry);
       if (wanted !== kind) {
         kind = wanted;
-        control = (makers[kind] ?? controlFor)({ label, parameter, describedBy, commit, time, variables, pickObject });
+        control = (makers[kind] ?? controlFor)({
+          label,
+          parameter,
+          describedBy,
+          commit,
+          time,
+          variables,
+          objects,
+          measured,
+        });
         holder.replaceChildren(...control.nodes);
         node.classList.toggle("tall", Boolean(control.isTall));
       }

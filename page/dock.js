@@ -45,7 +45,7 @@ export class Probe {
     if (wanted) this.show(wanted.pixel, frame);
   }
 
-  fill({ x, y, roles, result }) {
+  fill({ x, y, roles, result, objects = [] }) {
     this.hint.hidden = true;
     this.place.textContent = `${x}, ${y}`;
     const row = (name, values, unit, isResult) =>
@@ -56,9 +56,23 @@ export class Probe {
         [0, 1, 2, 3].map((i) => element("td", {}, i < values.length ? short(values[i]) : "")),
         element("td", { class: "unit" }, unit ?? ""),
       );
+    // The number of an object says less than its name.
+    const named = objects.filter(({ name }) => name !== undefined),
+      hasName = named.some(({ kind }) => kind === "object");
+    const nameRow = ({ kind, name, id }) =>
+      element(
+        "tr",
+        { title: String(id) },
+        element("th", { scope: "row" }, kind),
+        element("td", { colspan: 4 }, name),
+        element("td", { class: "unit" }),
+      );
     this.body.replaceChildren(
       ...(result ? [row("final", result, "", true)] : []),
-      ...roles.map(({ name, values, unit }) => row(name, values, unit)),
+      ...named.map(nameRow),
+      ...roles
+        .filter(({ name }) => !(hasName && name === "object_id"))
+        .map(({ name, values, unit }) => row(name, values, unit)),
     );
   }
 }

@@ -22,6 +22,7 @@ const ICONS = {
   keys: "m8 3 4.5 5L8 13 3.5 8z",
   variable: "m4.5 5 7 6m0-6-7 6",
   export: "M8 2.5v7.5m-3-3 3 3 3-3M2.5 11v2.5h11V11",
+  list: "M2.5 4h.01M5 4h8.5M2.5 8h.01M5 8h8.5M2.5 12h.01M5 12h8.5",
   copy: "M5.5 5.5v-3h8v8h-3m-8-5h8v8h-8z",
 };
 

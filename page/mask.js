@@ -6,8 +6,11 @@ import { objectsFrom, objectsText } from "./values.js";
 const KINDS = ["role", "object", "file"];
 const WORDS = { "": "none", role: "role", object: "objects", file: "file" };
 
-/** {node, update(mask, roles)}; `commit(mask)` sets it, null takes it out. `pick(node, take)` gives an object's id. */
-export function maskRow({ commit, pick }) {
+/**
+ * {node, update(mask, roles)}; `commit(mask)` sets it, null takes it out. `objects`: {names, pick(node, take),
+ * choose(take)} of the frame's objects.
+ */
+export function maskRow({ commit, objects: frame }) {
   let mask = null,
     kind = "";
   const choice = element("select", { "aria-label": "Mask by" });
@@ -38,11 +41,17 @@ export function maskRow({ commit, pick }) {
     parse: (text) => (text.trim() ? { value: text.trim() } : { error: "a path from the look's folder" }),
     commit: send,
   });
-  const picker = iconButton("pick", "Pick the mask's object in the picture", () => pick(picker, (id) => send(id)), {
+  const picker = iconButton("pick", "Pick the mask's object in the picture", () => frame.pick(picker, send), {
     class: "icon-button picker",
     "aria-pressed": "false",
   });
-  const objectPart = element("span", { class: "vector" }, objects.node, picker),
+  const chooser = iconButton("list", "Choose objects of the mask from a list", () =>
+    frame.choose((key) => {
+      const rest = mask?.object === undefined ? [] : [mask.object].flat();
+      send(rest.length ? [...rest.filter((one) => one !== key), key] : key);
+    }),
+  );
+  const objectPart = element("span", { class: "vector" }, objects.node, chooser, picker),
     inverted = element("label", { class: "invert" }, invert, "invert");
   choice.addEventListener("change", () => {
     kind = choice.value;
@@ -91,7 +100,7 @@ export function maskRow({ commit, pick }) {
         names.map((name) => [name, name]),
         mask?.role ?? names[0] ?? "",
       );
-      objects.show(mask?.object === undefined ? "" : objectsText([mask.object].flat()));
+      objects.show(mask?.object === undefined ? "" : objectsText([mask.object].flat(), frame.names.words));
       file.show(mask?.file ?? "");
       invert.checked = mask?.invert === true;
       show();

@@ -4,7 +4,9 @@ import { field } from "./number.js";
 import * as values from "./values.js";
 
 /** The text of a line's objects, and the line's key for such a text: an id, ranges of ids, or a name. */
-const objectsOf = ({ object, objects, name }) => String(object ?? objects ?? name ?? "");
+const objectsOf = ({ object, objects, name }, names) => String(name ?? objects ?? (object === undefined ? "" : names.words(object)));
+/** The line's key for an object that was picked or chosen. */
+const lineOf = (key) => (typeof key === "number" ? { object: key } : { name: key });
 export function keyFrom(text) {
   const trimmed = text.trim();
   if (!trimmed) return { error: "examples: 2, 3-7, Wheel" };
@@ -47,9 +49,9 @@ function cell({ label, column, commit, listId }) {
 
 /**
  * {node, update(rows, others)}. `columns`: {name: declaration}; `others`, if the value has it, the values of all other objects.
- * `onRows(rows)` and `onOthers(name, value)` take changes; `pickObject(node, take)` gives the id of the next click.
+ * `onRows(rows)` and `onOthers(name, value)` take changes; `objects`: {names, pick(node, take), choose(take)} of the frame.
  */
-export function objectsTable({ label, columns, hasOthers, onRows, onOthers, pickObject, listId }) {
+export function objectsTable({ label, columns, hasOthers, onRows, onOthers, objects, listId }) {
   const names = Object.keys(columns),
     lines = [];
   let rows = [];
@@ -78,9 +80,11 @@ export function objectsTable({ label, columns, hasOthers, onRows, onOthers, pick
   const picker = iconButton(
     "pick",
     `Pick an object for ${label}`,
-    () => pickObject(picker, (id) => onRows([...rows, { object: id, ...fresh() }])),
+    () => objects.pick(picker, addLine),
     { class: "icon-button picker", "aria-pressed": "false" },
   );
+  const chooser = iconButton("list", `Choose an object for ${label} from a list`, () => objects.choose(addLine));
+  const addLine = (key) => onRows([...rows, { ...lineOf(key), ...fresh() }]);
   // A profile has no default of its own: a new line begins with one that can be seen.
   const fresh = () =>
     Object.fromEntries(names.filter((name) => columns[name].begin).map((name) => [name, columns[name].begin]));
@@ -88,7 +92,7 @@ export function objectsTable({ label, columns, hasOthers, onRows, onOthers, pick
     "tr",
     {},
     element("td", {}, add.node),
-    element("td", { colspan: names.length, class: "quiet" }, "adds a line"),
+    element("td", { colspan: names.length, class: "quiet" }, element("span", { class: "adds" }, "adds a line", chooser)),
     element("td", {}, picker),
   );
   const othersLine =
@@ -161,7 +165,7 @@ export function objectsTable({ label, columns, hasOthers, onRows, onOthers, pick
         body.insertBefore(lines.at(-1).tr, last);
       }
       rows.forEach((row, i) => {
-        lines[i].object.show(objectsOf(row));
+        lines[i].object.show(objectsOf(row, objects.names));
         lines[i].cells.forEach((one, at) => one.update(valueOf(names[at], row)));
       });
     },
@@ -171,7 +175,7 @@ export function objectsTable({ label, columns, hasOthers, onRows, onOthers, pick
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
 /** The control of a parameter of type table. */
-export function tableControl({ label, parameter, commit, pickObject }) {
+export function tableControl({ label, parameter, commit, objects }) {
   let value = {};
   const send = (next) => {
     const { rows = [], default: others = {}, ...rest } = next;
@@ -188,7 +192,7 @@ export function tableControl({ label, parameter, commit, pickObject }) {
     hasOthers: true,
     onRows: (rows) => send({ ...value, rows }),
     onOthers: (name, one) => send({ ...value, default: { ...value.default, [name]: one } }),
-    pickObject,
+    objects,
   });
   return {
     nodes: [element("div", { class: "wide" }, table.node)],

@@ -1,14 +1,21 @@
 // The authoring page: a look made by eye. The program that serves it holds the look and draws the pictures.
+import { AddDialog } from "./add_dialog.js";
 import { get, token } from "./api.js";
 import { Costs, Histogram, Probe } from "./dock.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
+import { acceptDrops } from "./drop.js";
 import { ExportDialog } from "./export.js";
+import { Gallery } from "./gallery.js";
 import { Shortcuts } from "./keys.js";
+import { keyOf, objectAt, ObjectDialog, ObjectNames } from "./objects.js";
+import { SaveDialog } from "./save_dialog.js";
 import { ShaderView } from "./shader_view.js";
+import { sourceOf } from "./source.js";
 import { nameOf, StepList } from "./steps.js";
 import { Store } from "./store.js";
-import { AddDialog, Faults, TextView } from "./text_view.js";
+import { Faults, TextView } from "./text_view.js";
 import { short } from "./values.js";
+import { Thumbnails } from "./thumbnails.js";
 import { Viewer } from "./viewer.js";
 import { Waveform } from "./waveform.js";
 
@@ -24,25 +31,53 @@ const probe = new Probe(),
   costs = new Costs();
 at("dock").append(probe.node, histogram.node, waveform.node, costs.node);
 
-const dialog = new AddDialog(store);
+const thumbnails = new Thumbnails(store, viewer);
+const dialog = new AddDialog(store, thumbnails);
 const openAdd = () => dialog.open(store.lastPlace);
 
-/** A parameter that the picture can give: the focus distance from the depth, objects from the ids. */
-function pickFor(parameter, commit) {
-  const role = parameter.from === "camera.focus_distance" ? "depth" : parameter.type === "objects" ? "object_id" : null;
-  if (!role) return null;
-  return (node) =>
-    viewer.pick(node, ({ roles }) => {
-      const value = roles.find(({ name }) => name === role)?.values[0];
-      if (value === undefined || !Number.isFinite(value))
-        return notify(`The capture has no ${role} at this pixel`, true);
-      if (role === "object_id") return commit([value]);
-      commit(Number(short(value)));
-    });
+const names = new ObjectNames(store, viewer),
+  objectDialog = new ObjectDialog(names);
+const objects = {
+  names,
+  pick: (node, take) =>
+    viewer.pick(node, (pixel) => {
+      const found = objectAt(pixel) ?? pixel.objects[0];
+      if (!found) return notify("The capture has no objects at this pixel", true);
+      take(keyOf(found));
+    }),
+  choose: (take) => objectDialog.open(take),
+};
+
+/**
+ * What the frame can give a parameter: the depth of an object or a point for a focus, its light for an exposure, an object
+ * for a list of such. null for other parameters.
+ */
+function pickFor(parameter) {
+  if (parameter.type === "objects") return { click: (node, take) => objects.pick(node, (key) => take([key])) };
+  const isFocus = parameter.from === "camera.focus_distance",
+    isExposure = parameter.unit === "ev" && parameter.type === "float" && parameter.bind !== "define";
+  if (!isFocus && !isExposure) return null;
+  const fromPixel = (pixel, take) => {
+    const found = pixel.isPoint ? null : objectAt(pixel);
+    if (found) return take(sourceOf(parameter, keyOf(found)));
+    const { width, height } = store.state.capture,
+      uv = [(pixel.x + 0.5) / width, (pixel.y + 0.5) / height].map((place) => Number(place.toFixed(4)));
+    if (isExposure) return take({ from: "luminance", uv });
+    const depth = pixel.roles.find(({ name }) => name === "depth")?.values[0];
+    if (!Number.isFinite(depth)) return notify("The capture has no depth at this pixel", true);
+    take(Number(short(depth)));
+  };
+  return {
+    click: (node, take) => viewer.pick(node, (pixel) => fromPixel(pixel, take)),
+    choose: (take) => objects.choose((key) => take(sourceOf(parameter, key))),
+  };
 }
 const exporting = new ExportDialog(store, viewer);
-const list = new StepList(store, { add: openAdd, pickFor, time: viewer });
+const gallery = new Gallery(store, viewer, thumbnails, () => list.focus(0));
+const list = new StepList(store, { add: openAdd, pickFor, objects, time: viewer, gallery });
+acceptDrops(store);
 viewer.addEventListener("frame", () => list.showFrame());
+dialog.node.addEventListener("close", () => list.update()); // its pictures stopped those of the gallery
 dialog.node.addEventListener("added", async ({ detail }) => {
   if (!(await detail.done)) return;
   list.cards[detail.at]?.toggle(true);
@@ -138,8 +173,10 @@ function nextPanel() {
 async function save() {
   if (shaders.node.contains(document.activeElement)) return shaders.save();
   if (store.state.read_only) return notify("The program was started with --read-only", true);
-  if (await store.save()) notify(`Saved ${store.state.look.name}`);
+  const isSaved = store.state.look.has_name ? await store.save() : await saving.open();
+  if (isSaved) notify(`Saved ${store.state.look.name}`);
 }
+const saving = new SaveDialog(store);
 const undoButton = iconButton("undo", "Undo", () => store.undo(), { shortcut: "Ctrl+Z" }),
   redoButton = iconButton("redo", "Redo", () => store.redo(), { shortcut: "Ctrl+Shift+Z" }),
   saveButton = button([icon("save"), "Save"], save, { title: "Save (Ctrl+S)", class: "save" }),
@@ -222,16 +259,16 @@ addEventListener("beforeunload", (event) => store.state && (!store.isSaved || sh
 store.addEventListener("change", () => {
   const { look, capture, can_undo, can_redo, read_only } = store.state,
     isChanged = !store.isSaved;
-  lookName.textContent = look.name;
+  lookName.textContent = look.has_name ? look.name : "untitled";
   lookName.title = look.path;
   captureName.textContent = `${capture.width} × ${capture.height}`;
   captureName.title = capture.path;
-  mark.textContent = read_only ? "read-only" : isChanged ? "unsaved" : "";
+  mark.textContent = read_only ? "read-only" : isChanged ? "unsaved" : look.has_file ? "" : "new";
   mark.classList.toggle("changed", isChanged);
-  document.title = `${isChanged ? "• " : ""}${look.name} – Aftershade`;
+  document.title = `${isChanged ? "• " : ""}${lookName.textContent} – Aftershade`;
   undoButton.disabled = !can_undo;
   redoButton.disabled = !can_redo;
-  saveButton.disabled = read_only || !isChanged;
+  saveButton.disabled = read_only || (!isChanged && look.has_file);
   faults.update();
   viewer.update(); // first: it has the frame that the steps show
   list.update();
@@ -243,6 +280,8 @@ let measuring;
 viewer.addEventListener("picture", ({ detail }) => {
   costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   shaders.setFault("");
+  viewer.setMeasured(detail.times);
+  list.showFrame();
   if (detail.isCoarse) return;
   list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;

@@ -51,7 +51,7 @@ const TYPES = {
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 const kindOf = (profile) => (isObject(profile) ? profile.type : SHIPPED.includes(profile) ? profile : "file");
 
-export function profileControl({ label, describedBy, commit, pickObject }) {
+export function profileControl({ label, describedBy, commit, objects }) {
   let value = "",
     shownKind = null,
     numbers = [];
@@ -154,7 +154,7 @@ export function profileControl({ label, describedBy, commit, pickObject }) {
     columns: { profile: { type: "profile", begin: "skin", default: "skin" } },
     hasOthers: false,
     onRows: (rows) => commit(rows.length ? { ...(isByObject() ? value : { default: value }), rows } : profile()),
-    pickObject,
+    objects,
     listId,
   });
   const shipped = element(

@@ -96,8 +96,8 @@ class StepCard {
       time,
       variables,
     });
-    const pickObject = (node, take) => this.list.pickFor({ type: "objects" }, ([id]) => take(id))(node);
-    this.mask = maskRow({ commit: (value) => this.edit({ op: "mask", value }), pick: pickObject });
+    const { objects } = this.list;
+    this.mask = maskRow({ commit: (value) => this.edit({ op: "mask", value }), objects });
     const line = (label, ...nodes) =>
       element(
         "div",
@@ -120,10 +120,11 @@ class StepCard {
         id,
         parameter,
         commit: (value, gesture) => this.edit({ op: "set", param: id, value }, gesture && `${id} ${gesture}`),
-        pick: this.list.pickFor(parameter, (value) => this.edit({ op: "set", param: id, value })),
+        pick: this.list.pickFor(parameter),
         time,
         variables,
-        pickObject,
+        objects,
+        measured: () => time.measured.get(`${nameOf(this.step)}.${id}`),
       });
       row.node.dataset.param = id;
       this.rows.set(id, row);
@@ -232,15 +233,20 @@ class StepCard {
 }
 
 export class StepList {
-  /** `time`: {frame, frames, setFrame(frame)} of the scrubber. */
-  constructor(store, { add, pickFor, time }) {
+  /**
+   * `time`: {frame, frames, setFrame(frame), measured} of the viewer; `objects`: {names, pick, choose} of the frame; `gallery`: what a look without steps shows.
+   */
+  constructor(store, { add, pickFor, objects, time, gallery }) {
     this.store = store;
     this.pickFor = pickFor;
+    this.objects = objects;
     this.time = time;
+    this.gallery = gallery;
     this.cards = [];
     this.opened = new Set();
     this.list = element("ol", { class: "steps", id: "steps", "aria-label": "Steps" });
     this.variables = new Variables(store);
+    objects.names.addEventListener("change", () => this.store.state && this.update());
     this.empty = element("p", { class: "empty" }, "No steps. The picture is the capture's colour.");
     this.node = element(
       "div",
@@ -249,6 +255,7 @@ export class StepList {
       this.list,
       this.empty,
       button([icon("plus"), "Add a step"], add, { class: "add", title: "Add a step (A)" }),
+      gallery.node,
     );
   }
 
@@ -289,6 +296,7 @@ export class StepList {
     while (this.list.children.length > this.cards.length) this.list.lastChild.remove();
     if (active !== document.activeElement && active?.isConnected) active.focus();
     this.empty.hidden = this.cards.length > 0;
+    this.gallery.show(this.cards.length === 0 && !this.store.state.read_only);
     if (isFirst && this.cards.length) this.cards[0].toggle(true);
     this.hasShown = true;
   }

@@ -125,16 +125,13 @@ export class Store extends EventTarget {
     return this.#step("/api/redo", this.#undone, this.#done, "can_redo");
   }
 
-  save() {
-    return this.#inTurn(async () => {
-      try {
-        this.#take(await post("/api/save"));
-        return true;
-      } catch (error) {
-        this.#fail(error);
-        return false;
-      }
-    });
+  /** `name` is that of a look that has none yet. */
+  save(name) {
+    return this.#write("/api/save", name ? { name } : {});
+  }
+  /** {name, bytes}: a file or a folder that was dropped on the page. */
+  takeCapture(dropped) {
+    return this.#write("/api/capture", dropped);
   }
 
   /** shader: {effect, file, before, text}; `before` is what the file is thought to hold. */

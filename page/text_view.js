@@ -1,5 +1,5 @@
 // The look as text, with line numbers, and its faults at their lines.
-import { button, element, icon } from "./elements.js";
+import { button, element } from "./elements.js";
 
 const PAUSE_MS = 500; // after the last key, before the text is sent
 
@@ -143,7 +143,9 @@ export class Faults {
     );
   }
   update() {
-    const { faults } = this.store.state;
+    const { faults: all, steps } = this.store.state,
+      // That a look without steps does nothing, the list of steps says.
+      faults = this.store.hasFaults || steps.length ? all : [];
     this.node.classList.toggle("only-warnings", !this.store.hasFaults);
     this.node.hidden = faults.length === 0;
     const signature = JSON.stringify(faults);
@@ -155,110 +157,6 @@ export class Faults {
         faults.map((fault) => ({ ...fault, place: fault.line ? `${fault.line}:${fault.column || 1}` : "look" })),
         ({ line, column }) => this.goTo(line || 1, column || 1),
       ),
-    );
-  }
-}
-
-/** A dialog that finds effects by name and summary, and adds one. */
-export class AddDialog {
-  constructor(store) {
-    this.store = store;
-    this.search = element("input", {
-      type: "search",
-      placeholder: "Search effects",
-      "aria-label": "Search effects by name and summary",
-      role: "combobox",
-      "aria-expanded": "true",
-      "aria-controls": "found",
-      "aria-autocomplete": "list",
-      autocomplete: "off",
-      spellcheck: "false",
-    });
-    this.list = element("ul", { id: "found", role: "listbox", "aria-label": "Effects" });
-    this.none = element("p", { class: "empty", hidden: true }, "No effect matches.");
-    this.node = element(
-      "dialog",
-      { class: "add-dialog", "aria-label": "Add a step" },
-      element("div", { class: "search" }, icon("plus"), this.search),
-      this.list,
-      this.none,
-    );
-    document.body.append(this.node);
-    this.search.addEventListener("input", () => this.filter());
-    this.search.addEventListener("keydown", (event) => this.onKey(event));
-    this.node.addEventListener("click", (event) => event.target === this.node && this.node.close());
-  }
-
-  /** `at`: place in the list, before the view transform if there is one at the end. */
-  open(at) {
-    this.at = at;
-    this.search.value = "";
-    this.filter();
-    this.node.showModal();
-    this.search.focus();
-  }
-
-  filter() {
-    const words = this.search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const rank = (effect) => {
-      const id = effect.id.replaceAll("_", " "),
-        text = `${effect.id} ${id} ${effect.summary}`.toLowerCase();
-      if (!words.every((word) => text.includes(word))) return -1;
-      return words.every((word) => id.includes(word) || effect.id.includes(word))
-        ? id.startsWith(words[0] ?? "")
-          ? 2
-          : 1
-        : 0;
-    };
-    const found = [...this.store.effects.values()]
-      .map((effect) => ({ effect, order: rank(effect) }))
-      .filter(({ order }) => order >= 0)
-      .sort((a, b) => b.order - a.order || a.effect.id.localeCompare(b.effect.id));
-    this.list.replaceChildren(
-      ...found.map(({ effect }, i) =>
-        element(
-          "li",
-          {
-            role: "option",
-            id: `found-${i}`,
-            "aria-selected": "false",
-            "data-effect": effect.id,
-            onclick: () => this.take(effect.id),
-          },
-          element("span", { class: "name" }, effect.id),
-          element("span", { class: "summary" }, effect.summary),
-        ),
-      ),
-    );
-    this.none.hidden = found.length > 0;
-    this.choose(0);
-  }
-
-  choose(index) {
-    const { children } = this.list;
-    this.chosen = Math.min(Math.max(index, 0), children.length - 1);
-    [...children].forEach((node, i) => node.setAttribute("aria-selected", String(i === this.chosen)));
-    const node = children[this.chosen];
-    if (node) this.search.setAttribute("aria-activedescendant", node.id);
-    else this.search.removeAttribute("aria-activedescendant");
-    node?.scrollIntoView({ block: "nearest" });
-  }
-
-  onKey(event) {
-    const by = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[event.key];
-    if (by) this.choose(this.chosen + by);
-    else if (event.key === "Enter") this.take(this.list.children[this.chosen]?.dataset.effect);
-    else return;
-    event.preventDefault();
-  }
-
-  async take(effect) {
-    if (!effect) return;
-    this.node.close();
-    this.node.dispatchEvent(
-      new CustomEvent("added", {
-        detail: { at: this.at, done: this.store.edit([{ op: "add", at: this.at, effect }]) },
-      }),
     );
   }
 }

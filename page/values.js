@@ -85,7 +85,7 @@ export function fromText(text) {
 }
 
 /** [2, "4-7", "Wheel"] <-> "2, 4-7, Wheel" */
-export const objectsText = (list) => (Array.isArray(list) ? list.join(", ") : asText(list));
+export const objectsText = (list, words = String) => (Array.isArray(list) ? list.map(words).join(", ") : asText(list));
 export const objectsFrom = (text) =>
   text
     .split(",")

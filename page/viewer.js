@@ -9,11 +9,16 @@ import { nameOf } from "./steps.js";
 import { quantity, short } from "./values.js";
 import { listenToPointer } from "./viewer_input.js";
 
+/** Whether an effect has the texture of the lens with signed radii of circles of confusion. */
+const hasCircles = ({ textures = {}, outputs = {} } = {}) => "coc" in textures || "coc" in outputs;
+
 export class Viewer extends EventTarget {
   view = "final";
   other = "";
   exposure = 0;
   isPlaying = false;
+  /** By "step.parameter": numbers that the last picture took from the frame. */
+  measured = new Map();
 
   constructor(store, node) {
     super();
@@ -54,6 +59,7 @@ export class Viewer extends EventTarget {
     });
     this.zoomWords = element("output", { class: "zoom", "aria-label": "Zoom" }, "");
     this.badge = element("span", { class: "badge", hidden: true });
+    this.legend = element("span", { class: "legend", role: "status", hidden: true });
     this.busy = element("span", { class: "busy", hidden: true }, "drawing");
     const tool = (label, ...nodes) =>
       element("div", { class: "tool" }, element("span", { class: "label" }, label), nodes);
@@ -111,7 +117,7 @@ export class Viewer extends EventTarget {
       this.wipe,
       this.leftName,
       this.rightName,
-      element("div", { class: "flags" }, this.badge, this.busy),
+      element("div", { class: "flags" }, this.legend, this.badge, this.busy),
     );
 
     this.frameSlider = element("input", { type: "range", min: 0, step: 1, "aria-label": "Frame" });
@@ -147,7 +153,9 @@ export class Viewer extends EventTarget {
   update() {
     const { capture, steps } = this.store.state;
     this.picture.setSize(capture.width, capture.height);
-    this.frame ??= capture.frames[0];
+    if (!capture.frames.includes(this.frame)) this.frame = capture.frames[0];
+    if (capture.path !== this.capture) this.pictures.forgetOther();
+    this.capture = capture.path;
     this.frameSlider.max = Math.max(0, capture.frames.length - 1);
     this.frameSlider.disabled = capture.frames.length < 2;
     this.frameCount.textContent = `of ${capture.frames[0]} to ${capture.frames.at(-1)}`;
@@ -160,8 +168,10 @@ export class Viewer extends EventTarget {
     });
     const truths = [...new Set(Object.values(capture.truths).flat())],
       roles = capture.roles.map(({ name }) => `role:${name}`);
+    const lenses = steps.filter(({ effect, enabled }) => enabled && hasCircles(this.store.effects.get(effect)));
     const groups = [
       ["Picture", ["final", "before"]],
+      ["Limits of sharpness", lenses.map((step) => `sharp:${nameOf(step)}`)],
       ["Truth", truths.flatMap((name) => [`truth:${name}`, `difference:${name}`])],
       ["Roles of the capture", roles],
       ["Taps", taps],
@@ -200,7 +210,10 @@ export class Viewer extends EventTarget {
 
   words = (view) =>
     ({ final: "final", before: "before (no steps)" })[view] ??
-    view.replace(/^difference:/, "difference to ").replace(/^\w+:/, "");
+    view
+      .replace(/^difference:/, "difference to ")
+      .replace(/^sharp:/, "sharp by ")
+      .replace(/^\w+:/, "");
 
   refresh() {
     this.viewSelect.value = this.view;
@@ -295,6 +308,20 @@ export class Viewer extends EventTarget {
     }
   }
 
+  /** What a picture's times say of the frame: values from it, and the distances that are sharp. */
+  setMeasured({ measured = [], sharp_m } = {}) {
+    this.measured = new Map(measured.map(({ step, param, value }) => [`${step}.${param}`, value]));
+    this.legend.hidden = !this.view.startsWith("sharp:");
+    if (this.legend.hidden) return;
+    const [near, far] = (sharp_m ?? []).map((m) => `${short(m, 3)} m`);
+    this.legend.replaceChildren(
+      element("span", { class: "swatch front" }),
+      near ? `in front of ${near}` : "in front",
+      element("span", { class: "swatch behind" }),
+      far ? `behind ${far}` : "behind",
+      near ? "" : "; nothing is sharp",
+    );
+  }
   setBadge(words, isError = true) {
     this.badge.textContent = words;
     this.badge.hidden = !words;
@@ -356,11 +383,12 @@ export class Viewer extends EventTarget {
       this.canvas.focus();
     }
   }
-  async finishPick(pixel) {
+  /** With Shift, what is picked is the point and not the object at it. */
+  async finishPick(pixel, isPoint) {
     const { node, take } = this.picking;
     this.pick(node, take);
     try {
-      take(await get("/api/probe", { frame: this.frame, x: pixel[0], y: pixel[1] }));
+      take({ ...(await get("/api/probe", { frame: this.frame, x: pixel[0], y: pixel[1] })), isPoint });
       node.focus();
     } catch (error) {
       notify(error.message, true);

@@ -26,7 +26,7 @@ export function listenToPointer(viewer) {
     const pixel = picture.pixelAt(event);
     if (from && !from.moved && pixel) {
       viewer.setProbe(pixel);
-      if (viewer.picking) viewer.finishPick(pixel);
+      if (viewer.picking) viewer.finishPick(pixel, event.shiftKey);
     }
     from = null;
   });
@@ -70,7 +70,7 @@ export function listenToPointer(viewer) {
 
 function onKey(viewer, event) {
   const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-  if (event.key === "Enter" && viewer.picking && viewer.picture.probe) viewer.finishPick(viewer.picture.probe);
+  if (event.key === "Enter" && viewer.picking && viewer.picture.probe) viewer.finishPick(viewer.picture.probe, event.shiftKey);
   else if (event.key === "Escape" && viewer.picking) viewer.pick(viewer.picking.node);
   else if (arrow && event.ctrlKey) {
     viewer.picture.pan(-arrow[0] * PAN, -arrow[1] * PAN);

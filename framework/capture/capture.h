@@ -133,6 +133,8 @@ public:
     /// layers those of the first.
     std::vector<CryptomatteLayer> cryptomattes(int frame) const;
     std::vector<ObjectCoverage> cryptomatte_coverage(int frame, const std::string& name) const;
+    /// The id of the object that covers most of each pixel, by one of them; 0 for none.
+    Image ids_of_cryptomatte(int frame, const std::string& name) const;
     /// The full name of the one that is called `name` or "<layer>.<name>"; with "" of the one that objects
     /// are looked for in. Throws Error(ErrorKind::capture) where there is none, or where several would do.
     std::string cryptomatte_name(int frame, const std::string& name) const;

@@ -318,6 +318,14 @@ std::string CaptureReader::cryptomatte_name(int frame, const std::string& name) 
     return matte->name;
 }
 
+Image CaptureReader::ids_of_cryptomatte(int frame, const std::string& name) const {
+    if (const auto front = front_layer()) return layer_reader(*front, 0).ids_of_cryptomatte(frame, name);
+    const OpenFrame open = this->open(frame);
+    const FrameFile& file = cryptomatte_file(open);
+    const std::vector<CryptomatteLayer> mattes = find_cryptomattes(file);
+    return cryptomatte_ids(file, choose_cryptomatte(mattes, name, file), open.header.data_window);
+}
+
 std::vector<ObjectCoverage> CaptureReader::cryptomatte_coverage(int frame, const std::string& name) const {
     if (const auto front = front_layer()) return layer_reader(*front, 0).cryptomatte_coverage(frame, name);
     const OpenFrame open = this->open(frame);

@@ -38,6 +38,8 @@ std::string describe_json(const EffectManifest& manifest) {
                    {"inputs", json::object()},    {"outputs", json::object()},
                    {"params", json::object()},    {"textures", json::object()},
                    {"passes", json::array()},     {"presets", json::object()}};
+    if (!manifest.group.empty()) result["group"] = manifest.group;
+    if (manifest.is_recommended) result["recommended"] = true;
     if (manifest.uses_lights) result["uses"] = {"lights"};
     for (const InputSpec& input : manifest.inputs) {
         json entry = {{"role", input.role}, {"optional", input.optional}, {"doc", input.doc}};

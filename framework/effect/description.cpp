@@ -1,9 +1,12 @@
 #include "framework/effect/description.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
+#include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "framework/base/option.h"
 #include "framework/document/param_type.h"
@@ -207,6 +210,8 @@ std::string default_text(const ParamSpec& spec) {
 std::string describe_text(const EffectManifest& manifest, bool verbose) {
     std::ostringstream out;
     out << manifest.id << " " << manifest.version << "\n" << manifest.summary << "\n";
+    if (!manifest.group.empty())
+        out << "group: " << manifest.group << (manifest.is_recommended ? ", recommended" : "") << "\n";
     if (!manifest.params.empty()) out << "\nparameters\n";
     TextTable params("  ");
     for (const ParamSpec& spec : manifest.params) {
@@ -271,10 +276,31 @@ std::string describe_markdown(const EffectManifest& manifest) {
     return out.str();
 }
 
+std::vector<const EffectManifest*> in_groups(std::vector<const EffectManifest*> manifests) {
+    const std::vector<std::string>& groups = effect_groups();
+    std::ranges::stable_sort(manifests, {}, [&](const EffectManifest* manifest) {
+        return std::pair(std::ranges::find(groups, manifest->group) - groups.begin(),
+                         !manifest->is_recommended);
+    });
+    return manifests;
+}
+
+namespace {
+
+/// "color" as a heading of a page, which is British.
+std::string title(const std::string& group) {
+    static const std::map<std::string, std::string> british = {{"color", "Colour"}};
+    const auto found = british.find(group);
+    return found != british.end() ? found->second
+                                  : std::string(1, char(std::toupper(group.front()))) + group.substr(1);
+}
+
+}  // namespace
+
 std::string index_markdown(const std::vector<const EffectManifest*>& manifests) {
     std::ostringstream out;
-    out << "<!-- Made by `aftershade docs`; do not edit. -->\n# Effects\n\n| effect | from | to | "
-           "|\n|---|---|---|---|\n";
+    out << "<!-- Made by `aftershade docs`; do not edit. -->\n# Effects\n\nIn groups, the effect that most "
+           "looks need first.\n";
     const auto roles = [](const auto& list) {
         std::string text;
         std::set<std::string> named;  // a neighbouring frame's role is its own again
@@ -282,9 +308,16 @@ std::string index_markdown(const std::vector<const EffectManifest*>& manifests) 
             if (named.insert(item.role).second) text += (text.empty() ? "" : ", ") + item.role;
         return text;
     };
-    for (const EffectManifest* manifest : manifests)
-        out << "| [`" << manifest->id << "`](" << manifest->id << ".md) | " << roles(manifest->inputs)
-            << " | " << roles(manifest->outputs) << " | " << cell(manifest->summary) << " |\n";
+    const std::string* group = nullptr;
+    for (const EffectManifest* manifest : in_groups(manifests)) {
+        if (!group || *group != manifest->group)
+            out << "\n## " << (manifest->group.empty() ? "Others" : title(manifest->group))
+                << "\n\n| effect | from | to | |\n|---|---|---|---|\n";
+        group = &manifest->group;
+        out << "| [`" << manifest->id << "`](" << manifest->id << ".md)"
+            << (manifest->is_recommended ? ", recommended" : "") << " | " << roles(manifest->inputs) << " | "
+            << roles(manifest->outputs) << " | " << cell(manifest->summary) << " |\n";
+    }
     return out.str();
 }
 

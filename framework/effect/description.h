@@ -20,7 +20,9 @@ std::string describe_text(const EffectManifest& manifest, bool verbose);
 std::string describe_json(const EffectManifest& manifest);
 /// The page of the documentation: docs/effects/<id>.md.
 std::string describe_markdown(const EffectManifest& manifest);
-/// docs/effects/README.md: one line for each effect.
+/// By their groups, in each the recommended ones first; else as they were.
+std::vector<const EffectManifest*> in_groups(std::vector<const EffectManifest*> manifests);
+/// docs/effects/README.md: one line for each effect, in groups.
 std::string index_markdown(const std::vector<const EffectManifest*>& manifests);
 
 }  // namespace aftershade

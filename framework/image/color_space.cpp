@@ -122,6 +122,16 @@ ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& 
     return multiply(inverse(xyz_from_rgb(to)), xyz);
 }
 
+std::array<double, 3> luminance_weights(const Chromaticities& primaries) {
+    constexpr std::array kWeights = {0.2126, 0.7152, 0.0722};  // of Rec. 709
+    const ColorMatrix to_rec709 = conversion_matrix(primaries, kRec709);
+    std::array<double, 3> weights{};
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            weights[column] += kWeights[row] * to_rec709[row * 3 + column];
+    return weights;
+}
+
 void convert_colors(Image& image, const ColorMatrix& matrix) {
     const std::span<float> values = image.floats();
     for (std::size_t i = 0; i + 2 < values.size(); i += std::size_t(image.channels())) {

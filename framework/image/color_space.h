@@ -36,6 +36,9 @@ bool is_xyz(const Chromaticities& primaries);
 /// (ICC v4, annex E). Throws Error(ErrorKind::capture) for primaries that span no space.
 ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& to);
 
+/// Shares of R, G and B in the luminance, Y of CIE 1931.
+std::array<double, 3> luminance_weights(const Chromaticities& primaries);
+
 /// Applies the matrix to the first three channels.
 void convert_colors(Image& image, const ColorMatrix& matrix);
 

@@ -22,15 +22,25 @@ Json or_variable(Json form) {
     return schema::any_of({std::move(form), schema::variable()});
 }
 
-/// {"keys": {"1": 2.0, "24": 5.6}}
-Json keyed(const Json& literal) {
+/// {"keys": {"1": 2.0, "24": 5.6}}; `value` is of one key.
+Json keyed(const Json& value) {
     Json keys = {{"type", "object"},
-                 {"patternProperties", {{"^-?[0-9]+$", literal}}},
+                 {"patternProperties", {{"^-?[0-9]+$", value}}},
                  {"additionalProperties", false},
                  {"minProperties", 1}};
     return schema::object({{"keys", or_variable(keys)},
                            {"interpolation", or_variable(schema::one_of({"linear", "smooth", "step"}))}},
                           {"keys"});
+}
+
+/// {"from": "depth", "uv": [0.5, 0.5]} and {"from": "depth", "object": "Wheel"}
+void add_forms_of_pixels(const char* name, std::vector<Json>& forms) {
+    const Json source = or_variable({{"const", name}});
+    const Json side = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
+    const Json point = or_variable(schema::array_of(side, 2, 2));
+    forms.push_back(schema::object({{"from", source}, {"uv", point}}, {"from", "uv"}));
+    forms.push_back(schema::object({{"from", source}, {"object", or_variable(schema::object_key())}},
+                                   {"from", "object"}));
 }
 
 /// Values of the capture that a parameter may take.
@@ -43,22 +53,18 @@ std::vector<Json> captured(const ParamSpec& spec) {
             if (converts_to(field, spec)) fields.push_back(std::string(kFromCamera) + field.name);
     if (!fields.empty())
         forms.push_back(schema::object({{"from", or_variable(schema::one_of(fields))}}, {"from"}));
-    if (!is_scalar_type(spec.type) || !convert_unit(1, "m", spec.unit)) return forms;
-    const Json depth = or_variable({{"const", "depth"}});
-    const Json side = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
-    const Json point = or_variable(schema::array_of(side, 2, 2));
-    forms.push_back(schema::object({{"from", depth}, {"uv", point}}, {"from", "uv"}));
-    forms.push_back(
-        schema::object({{"from", depth}, {"object", or_variable(schema::object_key())}}, {"from", "object"}));
+    if (!is_scalar_type(spec.type)) return forms;
+    for (const auto& [source, unit] : {std::pair("depth", "m"), {"luminance", "ev"}})
+        if (convert_unit(1, unit, spec.unit)) add_forms_of_pixels(source, forms);
     return forms;
 }
 
 /// A value in any form.
 Json value_of(const ParamSpec& spec) {
-    const Json literal = schema::literal(spec, schema::Variables::yes);
-    Json forms = {literal};
-    if (spec.bind != ParamBind::define) forms.push_back(keyed(literal));
+    Json forms = {schema::literal(spec, schema::Variables::yes)};
     for (Json& form : captured(spec)) forms.push_back(std::move(form));
+    if (spec.bind != ParamBind::define)
+        forms.push_back(keyed(forms.size() == 1 ? forms[0] : Json{{"anyOf", forms}}));
     return {{"anyOf", std::move(forms)}};
 }
 

@@ -61,7 +61,8 @@ std::vector<ParamValue> PipelineStep::known_values(const ParamSpec& spec) const 
     if (const auto* literal = std::get_if<ParamValue>(&asked->second)) return {*literal};
     std::vector<ParamValue> known;
     if (const auto* keyed = std::get_if<KeyedValue>(&asked->second))
-        for (const auto& [frame, value] : keyed->keys) known.push_back(value);
+        for (const auto& [frame, value] : keyed->keys)
+            if (const auto* literal = std::get_if<ParamValue>(&value)) known.push_back(*literal);
     return known;
 }
 
@@ -86,8 +87,7 @@ std::vector<std::string> Pipeline::object_names() const {
     };
     for (const PipelineStep& step : steps) {
         for (const auto& [name, value] : step.values)
-            if (const auto* depth = std::get_if<DepthValue>(&value))
-                std::for_each(depth->objects.begin(), depth->objects.end(), add);
+            for (const PixelValue* pixels : pixel_values(value)) std::ranges::for_each(pixels->objects, add);
         for (const ParamSpec& spec : step.manifest->params)
             for (const ParamValue& value : step.known_values(spec))
                 if (is_param_buffer(spec.type))
@@ -273,7 +273,8 @@ namespace {
 std::string described(const ValueSource& source) {
     if (std::holds_alternative<KeyedValue>(source)) return ", by keys";
     if (const auto* camera = std::get_if<CameraValue>(&source)) return ", from camera." + camera->field;
-    if (std::holds_alternative<DepthValue>(source)) return ", from depth";
+    if (const auto* pixels = std::get_if<PixelValue>(&source))
+        return pixels->measure == PixelValue::Measure::depth ? ", from depth" : ", from luminance";
     return "";
 }
 

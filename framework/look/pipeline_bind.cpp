@@ -300,7 +300,7 @@ private:
         auto* literal = std::get_if<ParamValue>(&*parsed);
         if (is_file_type(spec->type) && literal) complete(*literal);
         if (auto* keyed = std::get_if<KeyedValue>(&*parsed); keyed && is_file_type(spec->type))
-            for (auto& [frame, file] : keyed->keys) complete(file);
+            for (auto& [frame, file] : keyed->keys) complete(std::get<ParamValue>(file));
         step.values[name] = std::move(*parsed);
         step.origins[name] = origin;
         step.places[name] = value.place;

@@ -97,11 +97,9 @@ bool needs_all(const PipelineStep& step) {
     const auto is_of_another_frame = [&](const InputSpec& input) {
         return input.frame != 0 && step.may_take(input);
     };
-    const auto is_of_pixels = [](const auto& value) {
-        return std::holds_alternative<DepthValue>(value.second);
-    };
+    const auto is_of_pixels = [](const auto& value) { return !pixel_values(value.second).empty(); };
     return step.manifest->has_history() || std::ranges::any_of(step.manifest->inputs, is_of_another_frame) ||
-           std::ranges::any_of(step.values, is_of_pixels) || std::holds_alternative<DepthValue>(step.mix) ||
+           std::ranges::any_of(step.values, is_of_pixels) || !pixel_values(step.mix).empty() ||
            (step.mask && !step.mask->file.empty());
 }
 

@@ -10,6 +10,7 @@
 #include "framework/capture/cryptomatte.h"
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
+#include "framework/image/color_space.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -21,6 +22,16 @@ std::optional<int> frame_number(const std::string& text) {
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
     return number;
+}
+
+constexpr const char *kDepthSource = "depth", *kLuminanceSource = "luminance";
+
+const char* source_of(PixelValue::Measure measure) {
+    return measure == PixelValue::Measure::depth ? kDepthSource : kLuminanceSource;
+}
+
+const char* unit_of(PixelValue::Measure measure) {
+    return measure == PixelValue::Measure::depth ? "m" : "ev";
 }
 
 struct SourceReader {
@@ -48,24 +59,32 @@ struct SourceReader {
             const auto frame = frame_number(member.key);
             if (!frame)
                 diagnostics.error(member.key_place, label + ": '" + member.key + "' is not a frame number");
-            const auto parsed = parse_param_value(spec, member.value, label, diagnostics);
+            auto parsed = key(member.value);
             if (frame && parsed && value.keys.contains(*frame))
                 diagnostics.error(member.key_place,
                                   label + ": frame " + std::to_string(*frame) + " has two keys");
             sound = sound && frame && parsed;
-            if (frame && parsed) value.keys[*frame] = *parsed;
+            if (frame && parsed) value.keys.insert_or_assign(*frame, std::move(*parsed));
         }
         return sound ? std::optional<ValueSource>(value) : std::nullopt;
     }
 
-    std::optional<ValueSource> from(const Node& node) {
+    std::optional<KeyValue> key(const Node& node) {
+        if (node.is_object() && node.find("from")) return from(node);
+        if (auto literal = parse_param_value(spec, node, label, diagnostics))
+            return KeyValue(std::move(*literal));
+        return std::nullopt;
+    }
+
+    std::optional<KeyValue> from(const Node& node) {
         ObjectReader reader(node, label, diagnostics);
         const auto source = reader.text("from", ObjectReader::Presence::required);
         if (!source) return std::nullopt;
-        if (source == "depth") return depth(reader, node);
+        if (source == kDepthSource) return pixels(PixelValue::Measure::depth, reader, node);
+        if (source == kLuminanceSource) return pixels(PixelValue::Measure::luminance, reader, node);
         reader.finish();
         std::vector<std::string> known = camera_sources(spec.type);
-        known.insert(known.begin(), "depth");
+        known.insert(known.begin(), {kDepthSource, kLuminanceSource});
         const Place& place = node.find("from")->place;
         if (std::find(known.begin(), known.end(), *source) == known.end()) {
             diagnostics.error(place, label + ": " + unknown_source(*source, known));
@@ -85,19 +104,23 @@ struct SourceReader {
         return CameraValue{field};
     }
 
-    std::optional<ValueSource> depth(ObjectReader& reader, const Node& node) {
-        DepthValue value;
+    std::optional<KeyValue> pixels(PixelValue::Measure measure, ObjectReader& reader, const Node& node) {
+        PixelValue value;
+        value.measure = measure;
         const Node* uv = reader.array("uv");
         const Node* object = reader.any("object");
         reader.finish();
         if (!is_scalar(node.place)) return std::nullopt;
-        if (!convert_unit(1, "m", spec.unit)) {
-            diagnostics.error(node.place, label + ": depth is in m, which cannot be converted to " +
+        const std::string source = source_of(measure), unit = unit_of(measure);
+        if (!convert_unit(1, unit, spec.unit)) {
+            diagnostics.error(node.place, label + ": " + source + " is in " + unit +
+                                              ", which cannot be converted to " +
                                               (spec.unit.empty() ? "a pure number" : spec.unit));
             return std::nullopt;
         }
         if ((uv != nullptr) == (object != nullptr)) {
-            diagnostics.error(node.place, label + ": a value from depth has one of 'uv' and 'object'");
+            diagnostics.error(node.place,
+                              label + ": a value from " + source + " has one of 'uv' and 'object'");
             return std::nullopt;
         }
         if (uv) {
@@ -139,47 +162,91 @@ ParamValue fitted(double number, const ParamSpec& spec, const std::string& label
     return value_of_numbers(spec, {number});
 }
 
-double median_depth_m(const std::vector<TableKey>& objects, const std::string& label,
-                      const Capture& capture) {
+/// What a value takes of a pixel: metres, or the light's luminance. Not finite where it has none.
+class Measured {
+public:
+    Measured(const PixelValue& value, const Capture& capture)
+        : is_depth_(value.measure == PixelValue::Measure::depth),
+          image_(capture.images.at(is_depth_ ? kDepthRole : kColorRole)),
+          weights_(luminance_weights(capture.header.primaries)) {}
+
+    double at(std::size_t pixel) const {
+        if (is_depth_) return double(image_.floats()[pixel]);
+        const float* light = &image_.floats()[pixel * std::size_t(image_.channels())];
+        double luminance = 0;
+        for (int c = 0; c < 3; ++c) luminance += weights_[std::size_t(c)] * double(light[c]);
+        return luminance;
+    }
+    double at(int x, int y) const {
+        return at(std::size_t(y) * std::size_t(image_.width()) + std::size_t(x));
+    }
+
+    /// In the source's unit: the grey card's 18 % is that of ISO 2720, which exposure meters are set to.
+    double value(double measured) const { return is_depth_ ? measured : std::log2(0.18 / measured); }
+    /// What a pixel without a value lacks.
+    const char* lack() const { return is_depth_ ? "a depth" : "light"; }
+    bool is_there(double measured) const { return std::isfinite(measured) && (is_depth_ || measured > 0); }
+
+private:
+    bool is_depth_;
+    const Image& image_;
+    std::array<double, 3> weights_;
+};
+
+double median_of_objects(const PixelValue& value, const std::string& label, const Capture& capture) {
+    const Measured measured(value, capture);
+    const std::vector<TableKey>& objects = value.objects;
     const std::vector<IdRange> wanted = id_ranges(objects);
     const auto ids = capture.images.at(kObjectIdRole).uints();
-    const auto depths = capture.images.at(kDepthRole).floats();
-    std::vector<float> found;
+    std::vector<double> found;
     for (std::size_t i = 0; i < ids.size(); ++i)
-        if (std::isfinite(depths[i]) && contains(wanted, ids[i])) found.push_back(depths[i]);
+        if (contains(wanted, ids[i]) && measured.is_there(measured.at(i))) found.push_back(measured.at(i));
     if (found.empty()) {
         const bool is_one = objects.size() == 1 && objects[0].first == objects[0].last;
         std::vector<std::string> names;
         for (const TableKey& key : objects) names.push_back(object_text(key));
         refuse(label, capture.header,
-               joined(names, " and ") + (is_one ? " has" : " have") + " no pixel with a depth in this frame");
+               joined(names, " and ") + (is_one ? " has" : " have") + " no pixel with " + measured.lack() +
+                   " in this frame");
     }
     const auto middle = found.begin() + std::ptrdiff_t(found.size() / 2);
     std::nth_element(found.begin(), middle, found.end());
-    return double(*middle);
+    return measured.value(*middle);
 }
 
-double depth_at_m(const std::array<double, 2>& uv, const std::string& label, const Capture& capture) {
+double value_at_point(const PixelValue& value, const std::string& label, const Capture& capture) {
     const Window& display = capture.header.display_window;
     const Window& data = capture.header.data_window;
+    const auto& uv = *value.uv;
     const int x = display.min_x + std::min(int(uv[0] * display.width()), display.width() - 1);
     const int y = display.min_y + std::min(int(uv[1] * display.height()), display.height() - 1);
     const std::string where = "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ")";
     if (!data.contains(x, y)) refuse(label, capture.header, where + " is outside the data window");
-    const float depth = capture.images.at(kDepthRole).at(x - data.min_x, y - data.min_y, 0);
-    if (!std::isfinite(depth)) refuse(label, capture.header, "nothing was hit at " + where);
-    return double(depth);
+    const Measured measured(value, capture);
+    const double found = measured.at(x - data.min_x, y - data.min_y);
+    if (!measured.is_there(found))
+        refuse(label, capture.header,
+               value.measure == PixelValue::Measure::depth ? "nothing was hit at " + where
+                                                           : where + " has no light");
+    return measured.value(found);
 }
 
-ParamValue keyed_at(const KeyedValue& value, const ParamSpec& spec, int frame) {
+ValueSource as_source(const KeyValue& key) {
+    return std::visit([](const auto& value) { return ValueSource(value); }, key);
+}
+
+ParamValue keyed_at(const KeyedValue& value, const ParamSpec& spec, const std::string& label,
+                    const Capture& capture) {
+    const int frame = capture.header.frame;
+    const auto of = [&](const KeyValue& key) { return evaluate(as_source(key), spec, label, capture); };
     const auto after = value.keys.lower_bound(frame);
-    if (after == value.keys.end()) return value.keys.rbegin()->second;
-    if (after == value.keys.begin() || after->first == frame) return after->second;
+    if (after == value.keys.end()) return of(value.keys.rbegin()->second);
+    if (after == value.keys.begin() || after->first == frame) return of(after->second);
     const auto before = std::prev(after);
-    if (value.interpolation == KeyedValue::Interpolation::step) return before->second;
+    if (value.interpolation == KeyedValue::Interpolation::step) return of(before->second);
     double t = double(frame - before->first) / double(after->first - before->first);
     if (value.interpolation == KeyedValue::Interpolation::smooth) t = t * t * (3 - 2 * t);
-    return interpolate(spec, before->second, after->second, t);
+    return interpolate(spec, of(before->second), of(after->second), t);
 }
 
 }  // namespace
@@ -188,36 +255,50 @@ std::optional<ValueSource> parse_value_source(const ParamSpec& spec, const Node&
                                               const std::string& label, Diagnostics& diagnostics) {
     SourceReader reader{spec, label, diagnostics};
     if (node.is_object() && node.find("keys")) return reader.keys(node);
-    if (node.is_object() && node.find("from")) return reader.from(node);
-    if (auto value = parse_param_value(spec, node, label, diagnostics)) return ValueSource(std::move(*value));
+    if (const auto value = reader.key(node)) return as_source(*value);
     return std::nullopt;
+}
+
+std::vector<const PixelValue*> pixel_values(const ValueSource& source) {
+    if (const auto* pixels = std::get_if<PixelValue>(&source)) return {pixels};
+    std::vector<const PixelValue*> values;
+    if (const auto* keyed = std::get_if<KeyedValue>(&source))
+        for (const auto& [frame, key] : keyed->keys)
+            if (const auto* pixels = std::get_if<PixelValue>(&key)) values.push_back(pixels);
+    return values;
 }
 
 std::string format_source(const ValueSource& source) {
     if (const auto* value = std::get_if<ParamValue>(&source)) return format_value(*value);
     if (const auto* camera = std::get_if<CameraValue>(&source))
         return "{\"from\": \"camera." + camera->field + "\"}";
-    if (const auto* depth = std::get_if<DepthValue>(&source)) {
-        const std::string begin = "{\"from\": \"depth\", ";
-        if (depth->uv)
-            return begin + "\"uv\": [" + format_number((*depth->uv)[0]) + ", " +
-                   format_number((*depth->uv)[1]) + "]}";
-        return begin + "\"object\": " + format_object_keys(depth->objects) + "}";
+    if (const auto* pixels = std::get_if<PixelValue>(&source)) {
+        const std::string begin = std::string("{\"from\": \"") + source_of(pixels->measure) + "\", ";
+        if (pixels->uv)
+            return begin + "\"uv\": [" + format_number((*pixels->uv)[0]) + ", " +
+                   format_number((*pixels->uv)[1]) + "]}";
+        return begin + "\"object\": " + format_object_keys(pixels->objects) + "}";
     }
     const auto& keyed = std::get<KeyedValue>(source);
     std::string text;
     for (const auto& [frame, value] : keyed.keys)
-        text += (text.empty() ? "" : ", ") + ("\"" + std::to_string(frame) + "\": ") + format_value(value);
+        text += (text.empty() ? "" : ", ") + ("\"" + std::to_string(frame) + "\": ") +
+                format_source(as_source(value));
     const std::array<std::string, 3> names = {"linear", "smooth", "step"};
     return "{\"keys\": {" + text + "}, \"interpolation\": \"" + names[std::size_t(keyed.interpolation)] +
            "\"}";
 }
 
 std::vector<std::string> roles_of(const ValueSource& source) {
-    const auto* depth = std::get_if<DepthValue>(&source);
-    if (!depth) return {};
-    if (!depth->objects.empty()) return {kDepthRole, kObjectIdRole};
-    return {kDepthRole};
+    std::vector<std::string> roles;
+    const auto add = [&](const char* role) {
+        if (std::ranges::find(roles, role) == roles.end()) roles.emplace_back(role);
+    };
+    for (const PixelValue* value : pixel_values(source)) {
+        add(value->measure == PixelValue::Measure::depth ? kDepthRole : kColorRole);
+        if (!value->objects.empty()) add(kObjectIdRole);
+    }
+    return roles;
 }
 
 std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string& field,
@@ -242,8 +323,7 @@ std::optional<ParamValue> camera_value(const ParamSpec& spec, const std::string&
 ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std::string& label,
                     const Capture& capture) {
     if (const auto* value = std::get_if<ParamValue>(&source)) return *value;
-    if (const auto* keyed = std::get_if<KeyedValue>(&source))
-        return keyed_at(*keyed, spec, capture.header.frame);
+    if (const auto* keyed = std::get_if<KeyedValue>(&source)) return keyed_at(*keyed, spec, label, capture);
     if (const auto* camera = std::get_if<CameraValue>(&source)) {
         auto value = camera_value(spec, camera->field, label, capture.header);
         if (!value)
@@ -252,12 +332,13 @@ ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std:
                        "; give it in the capture.json's \"camera\", or a value in the look");
         return *value;
     }
-    const auto& depth = std::get<DepthValue>(source);
+    const auto& pixels = std::get<PixelValue>(source);
     for (const std::string& role : roles_of(source))
         if (!capture.images.contains(role)) refuse(label, capture.header, "the capture has no " + role);
-    const double depth_m =
-        depth.uv ? depth_at_m(*depth.uv, label, capture) : median_depth_m(depth.objects, label, capture);
-    return fitted(*convert_unit(depth_m, "m", spec.unit), spec, label, "depth", capture.header);
+    const double value =
+        pixels.uv ? value_at_point(pixels, label, capture) : median_of_objects(pixels, label, capture);
+    return fitted(*convert_unit(value, unit_of(pixels.measure), spec.unit), spec, label,
+                  source_of(pixels.measure), capture.header);
 }
 
 }  // namespace aftershade

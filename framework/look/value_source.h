@@ -13,27 +13,37 @@
 
 namespace aftershade {
 
-/// {"keys": {"1": 2.0, "24": 5.6}, "interpolation": "linear"}: by frame, constant before the first key and
-/// after the last.
-struct KeyedValue {
-    enum class Interpolation { linear, smooth, step };  ///< smooth eases in and out of each key
-    std::map<int, ParamValue> keys;
-    Interpolation interpolation = Interpolation::linear;
-};
-
 /// {"from": "camera.focus_distance"}: of the capture; it is an error where the capture lacks it.
 struct CameraValue {
     std::string field;  ///< "focus_distance", "lens_model"
 };
 
-/// {"from": "depth", "uv": [0.5, 0.5]} or {"from": "depth", "object": 2}: metres along the view axis, of one
-/// point of the display window (u right, v down, from 0 to 1) or the median over the pixels of objects.
-struct DepthValue {
+/// {"from": "depth", "uv": [0.5, 0.5]} or {"from": "depth", "object": 2}: of one point of the display window
+/// (u right, v down, from 0 to 1) or the median over the pixels of objects.
+struct PixelValue {
+    enum class Measure {
+        depth,     ///< metres along the view axis
+        luminance  ///< stops that bring the light of `color` to 18 % grey
+    };
+    Measure measure = Measure::depth;
     std::optional<std::array<double, 2>> uv;
     std::vector<TableKey> objects;  ///< one entry of a document: a name, or ids and ranges of ids
 };
 
-using ValueSource = std::variant<ParamValue, KeyedValue, CameraValue, DepthValue>;
+using KeyValue = std::variant<ParamValue, CameraValue, PixelValue>;
+
+/// {"keys": {"1": 2.0, "24": {"from": ...}}, "interpolation": "linear"}: by frame, constant before the first
+/// key and after the last. A key from the capture has the value that the capture gives for each frame.
+struct KeyedValue {
+    enum class Interpolation { linear, smooth, step };  ///< smooth eases in and out of each key
+    std::map<int, KeyValue> keys;
+    Interpolation interpolation = Interpolation::linear;
+};
+
+using ValueSource = std::variant<ParamValue, KeyedValue, CameraValue, PixelValue>;
+
+/// Each value that the source takes from pixels, by itself or in a key.
+std::vector<const PixelValue*> pixel_values(const ValueSource& source);
 
 /// Reads a value for `spec` in any form. `label` names the parameter in messages.
 std::optional<ValueSource> parse_value_source(const ParamSpec& spec, const Node& node,
@@ -42,7 +52,7 @@ std::optional<ValueSource> parse_value_source(const ParamSpec& spec, const Node&
 /// The value as a document would write it.
 std::string format_source(const ValueSource& source);
 
-/// Roles that the value is taken from: depth, object_id.
+/// Roles that the value is taken from: depth or color, object_id.
 std::vector<std::string> roles_of(const ValueSource& source);
 
 /// The value for one frame. Throws Error(ErrorKind::capture) naming `label` where the capture lacks what it

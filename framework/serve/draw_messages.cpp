@@ -68,6 +68,7 @@ std::optional<Json> receive_message(int socket, std::string& body) {
 bool send_request(int socket, const DrawRequest& request) {
     return send_message(socket,
                         {{"kind", int(request.kind)},
+                         {"capture", request.capture},
                          {"files", request.files},
                          {"revision", request.revision},
                          {"effects_revision", request.effects_revision},
@@ -87,6 +88,7 @@ std::optional<DrawRequest> receive_request(int socket) {
     const auto json = receive_message(socket, request.text);
     if (!json) return std::nullopt;
     request.kind = DrawRequest::Kind(json->at("kind").get<int>());
+    json->at("capture").get_to(request.capture);
     json->at("files").get_to(request.files);
     json->at("revision").get_to(request.revision);
     json->at("effects_revision").get_to(request.effects_revision);

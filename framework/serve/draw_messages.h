@@ -12,8 +12,17 @@ namespace aftershade::serve {
 
 /// What is to be drawn, without anything that only one process has.
 struct DrawRequest {
-    enum class Kind { picture, probe, histogram, metrics };
+    enum class Kind {
+        picture,
+        probe,
+        histogram,
+        metrics,
+        thumbnail,  ///< a picture of a text that is not the look's
+        starts,     ///< the starting looks, for this frame
+        objects     ///< the names of what the frame shows
+    };
     Kind kind = Kind::picture;
+    std::string capture;             ///< CAPTURE of the command line; "" for the process's own
     std::string text;                ///< of the look
     std::vector<std::string> files;  ///< that it may name, with links followed
     std::uint64_t revision = 0;

@@ -8,8 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/path_bounds.h"
+#include "framework/look/starting_looks.h"
 #include "framework/serve/draw_messages.h"
 #include "framework/serve/drawing_process.h"
 #include "framework/serve/look_model.h"
@@ -37,10 +39,7 @@ public:
         if (bound_ && bound_->revision == request.revision &&
             bound_->effects_revision == request.effects_revision)
             return bound_;
-        if (!effects_ || effects_revision_ != request.effects_revision) {
-            effects_ = find_effects(options_);
-            effects_revision_ = request.effects_revision;
-        }
+        const auto effects = effects_of(request.effects_revision);
         Diagnostics faults;
         std::string refused;
         const FileRule rule([&](const std::filesystem::path& file) -> std::string {
@@ -50,7 +49,7 @@ public:
                       "' is not a file that the look named when it was read (change the look)";
             return "is not a file that the look named";
         });
-        auto bound = bind_text(request.text, std::filesystem::absolute(options_.look), effects_, faults);
+        auto bound = bind_text(request.text, std::filesystem::absolute(options_.look), effects, faults);
         if (!refused.empty()) throw Refusal{403, refused};
         if (!bound || faults.has_errors())
             throw Refusal{409, "the effects on disk are no longer those that the look was bound to"};
@@ -60,6 +59,14 @@ public:
         return bound_;
     }
 
+    const std::shared_ptr<EffectRegistry>& effects_of(std::uint64_t revision) {
+        if (!effects_ || effects_revision_ != revision) {
+            effects_ = find_effects(options_);
+            effects_revision_ = revision;
+        }
+        return effects_;
+    }
+
 private:
     const ServeOptions& options_;
     std::shared_ptr<EffectRegistry> effects_;
@@ -67,13 +74,35 @@ private:
     std::shared_ptr<const BoundText> bound_;  // the last one
 };
 
-Response answer(const DrawRequest& request, Looks& looks, PictureMaker& maker) {
+/// [{"name", "summary", "text"}], with "needs" in place of the text where the capture lacks a role.
+Response starts(const DrawRequest& request, const std::filesystem::path& data, EffectRegistry& effects,
+                PictureMaker& maker) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const StartingLook& look :
+         find_starting_looks(starting_looks_folder(data), effects, maker.header_of(request.frame))) {
+        nlohmann::ordered_json entry = {{"name", look.name()}, {"summary", look.summary}};
+        if (look.missing) entry["needs"] = look.missing->role;
+        else
+            entry["text"] =
+                maker.focused_on_surface(read_text_file(look.file, ErrorKind::usage), request.frame);
+        list.push_back(std::move(entry));
+    }
+    return json_response(list);
+}
+
+Response answer(const DrawRequest& request, const ServeOptions& options, Looks& looks, PictureMaker& maker) {
+    if (request.kind == DrawRequest::Kind::starts)
+        return starts(request, options.data_folder, *looks.effects_of(request.effects_revision), maker);
+    if (request.kind == DrawRequest::Kind::objects) return json_response(maker.objects(request.frame));
     const PictureRequest wanted{looks.of(request), request.frame,       request.scale,
                                 request.view,      request.exposure_ev, request.continues};
     switch (request.kind) {
         case DrawRequest::Kind::probe: return json_response(maker.probe(wanted, request.x, request.y));
         case DrawRequest::Kind::histogram: return json_response(maker.histogram(wanted));
         case DrawRequest::Kind::metrics: return json_response(maker.metrics(wanted, request.truth));
+        case DrawRequest::Kind::starts:
+        case DrawRequest::Kind::objects:
+        case DrawRequest::Kind::thumbnail:
         case DrawRequest::Kind::picture: break;
     }
     MadePicture made = maker.make(wanted);
@@ -84,9 +113,32 @@ Response answer(const DrawRequest& request, Looks& looks, PictureMaker& maker) {
         {{"X-Aftershade-Times", made.times}, {"X-Aftershade-Revision", std::to_string(request.revision)}}};
 }
 
-Response answer_or_fault(const DrawRequest& request, Looks& looks, PictureMaker& maker) {
+/// What draws the capture of the last request.
+class Maker {
+public:
+    Maker(const ServeOptions& options, StatusWriter& status) : options_(options), status_(status) {}
+
+    /// Throws Error.
+    PictureMaker& of(const std::string& capture) {
+        if (maker_ && capture == capture_) return *maker_;
+        Sequence sequence = options_.open_sequence(capture);
+        maker_.reset();
+        capture_ = capture;
+        return maker_.emplace(std::move(sequence), options_.profiles, options_.limits, options_.gl,
+                              options_.data_folder, status_);
+    }
+
+private:
+    const ServeOptions& options_;
+    StatusWriter& status_;
+    std::string capture_;
+    std::optional<PictureMaker> maker_;
+};
+
+Response answer_or_fault(const DrawRequest& request, const ServeOptions& options, Looks& looks,
+                         Maker& maker) {
     try {
-        return answer(request, looks, maker);
+        return answer(request, options, looks, maker.of(request.capture));
     } catch (const Refusal& refusal) {
         return error_response(refusal.status, refusal.message);
     } catch (const Error& error) {
@@ -100,19 +152,18 @@ Response answer_or_fault(const DrawRequest& request, Looks& looks, PictureMaker&
 
 void draw_for(const ServeOptions& options, int socket) {
     StatusWriter status;
-    std::optional<PictureMaker> maker;
+    Maker maker(options, status);
     try {
-        maker.emplace(options.sequence, options.profiles, options.limits, options.gl, options.data_folder,
-                      status);
+        const PictureMaker& first = maker.of(options.capture);
+        if (options.drawn_by) options.drawn_by(first.gl());
     } catch (const Error& error) {
         send_answer(socket, {500, std::to_string(int(error.kind())), error.what()});
         return;
     }
-    if (options.drawn_by) options.drawn_by(maker->gl());
     if (!send_answer(socket, {})) return;
     Looks looks(options);
     while (const auto request = receive_request(socket))
-        if (!send_answer(socket, answer_or_fault(*request, looks, *maker))) return;
+        if (!send_answer(socket, answer_or_fault(*request, options, looks, maker))) return;
 }
 
 }  // namespace aftershade::serve

@@ -5,11 +5,15 @@
 
 namespace aftershade::serve {
 
-DrawingProcess::DrawingProcess(RunDrawer run) : run_(std::move(run)) {
-    start();
+DrawingProcess::DrawingProcess(RunDrawer run, Start begin) : run_(std::move(run)) {
+    if (begin == Start::now) start();
 }
 
 DrawingProcess::~DrawingProcess() {
+    rest();
+}
+
+void DrawingProcess::rest() {
     if (socket_.get() >= 0) end();
 }
 

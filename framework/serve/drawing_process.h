@@ -28,8 +28,9 @@ using RunDrawer = std::function<DrawerEnd(int socket)>;
 /// [one thread at a time]
 class DrawingProcess {
 public:
+    enum class Start { now, at_first_use };
     /// Starts it, and waits for its context. Throws Error where there is none.
-    explicit DrawingProcess(RunDrawer run);
+    explicit DrawingProcess(RunDrawer run, Start start = Start::now);
     ~DrawingProcess();
     DrawingProcess(const DrawingProcess&) = delete;
     DrawingProcess& operator=(const DrawingProcess&) = delete;
@@ -37,6 +38,8 @@ public:
     /// Starts it before where there is none. Throws DrawerEnd where it came to its end over the request, and
     /// Error where it cannot be started.
     Response draw(const DrawRequest& request);
+    /// Ends it where there is one, until the next request.
+    void rest();
 
 private:
     void start();

@@ -251,6 +251,13 @@ void add_step(std::string& text, const SpanNode& steps, const Json& edit) {
         name = first + "_" + std::to_string(n);
     Json step = {{"effect", effect}};
     if (name != first) step["name"] = name;
+    const Span whole = steps.span;
+    if (const std::string_view list = whole.of(text); list == "[]" && text.find('\n') < whole.begin) {
+        const std::string end = line_end(text), indent = line_start(text, whole.begin).indent;
+        text.replace(whole.begin, list.size(),
+                     "[" + end + indent + "  " + text_of(step) + end + indent + "]");
+        return;
+    }
     insert_part(text, list_of(steps), at, text_of(step));
 }
 

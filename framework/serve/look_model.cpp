@@ -1,5 +1,8 @@
 #include "framework/serve/look_model.h"
 
+#include <algorithm>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +25,9 @@ constexpr std::size_t kMaxTexts = 4096, kMaxTextBytes = std::size_t(16) << 20;
 /// Drawn where the look has had faults from the start.
 constexpr const char* kNoSteps = R"({ "aftershade": 1, "steps": [] })";
 
+/// What a look without a file begins with.
+constexpr const char* kEmptyLook = "{\n  \"aftershade\": 1,\n  \"steps\": []\n}\n";
+
 std::size_t bytes_of(const std::vector<std::string>& texts) {
     std::size_t bytes = 0;
     for (const std::string& text : texts) bytes += text.size();
@@ -38,13 +44,15 @@ Place place_of_step(const Look& look, const std::string& step) {
 }  // namespace
 
 LookModel::LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
-                     std::vector<std::filesystem::path> folders)
-    : path_(std::move(path)),
-      find_effects_(std::move(find_effects)),
+                     std::vector<std::filesystem::path> folders, File file)
+    : find_effects_(std::move(find_effects)),
       read_only_(read_only),
       folders_(std::move(folders)),
+      path_(std::move(path)),
+      file_(file),
       effects_(find_effects_()) {
-    std::string text = read_text_file(path_, ErrorKind::usage, kMaxDocumentBytes);
+    std::string text =
+        file_ == File::there ? read_text_file(path_, ErrorKind::usage, kMaxDocumentBytes) : kEmptyLook;
     saved_text_ = text;
     texts_.push_back(std::move(text));
     adopt(binding_of(texts_[at_], Origin::disk));
@@ -62,7 +70,7 @@ std::string LookModel::why_not(const std::filesystem::path& file) const {
                "the file another ending)";
     if (named_on_disk_.contains(file)) return "";
     std::vector<std::filesystem::path> folders(folders_.begin(), folders_.end());
-    folders.push_back(path_.parent_path());
+    if (file_ != File::unnamed) folders.push_back(path_.parent_path());
     // Nothing of what lies elsewhere, such as where its links lead, goes to the page.
     if (has_detour(file, folders))
         return "goes through a folder outside those that a page may read (leave the detour out" +
@@ -144,12 +152,8 @@ void LookModel::change(std::string text, Binding binding) {
     adopt(std::move(binding));
 }
 
-void LookModel::edit(std::uint64_t revision, const nlohmann::ordered_json& edits) {
+std::string LookModel::with_edits(const nlohmann::ordered_json& edits) const {
     if (!edits.is_array()) throw Refusal{400, "'edits' is a list"};
-    const std::lock_guard lock(mutex_);
-    if (revision != revision_)
-        throw Refusal{409, "the edit is for revision " + std::to_string(revision) + ", the look is at " +
-                               std::to_string(revision_)};
     std::string text = texts_[at_];
     for (const auto& edit : edits) {
         try {
@@ -160,10 +164,36 @@ void LookModel::edit(std::uint64_t revision, const nlohmann::ordered_json& edits
         if (text.size() > kMaxDocumentBytes)
             throw Refusal{413, "the look would be longer than 1 MiB, the most that a look may be"};
     }
+    return text;
+}
+
+void LookModel::edit(std::uint64_t revision, const nlohmann::ordered_json& edits) {
+    const std::lock_guard lock(mutex_);
+    if (revision != revision_)
+        throw Refusal{409, "the edit is for revision " + std::to_string(revision) + ", the look is at " +
+                               std::to_string(revision_)};
+    std::string text = with_edits(edits);
     if (text == texts_[at_]) return;
     Binding binding = binding_of(text, Origin::page);
     if (!binding.refused.empty()) throw Refusal{403, binding.refused};
     change(std::move(text), std::move(binding));
+}
+
+std::shared_ptr<const BoundText> LookModel::tried(const nlohmann::ordered_json& edits) {
+    const std::lock_guard lock(mutex_);
+    Binding binding = binding_of(with_edits(edits), Origin::page);
+    if (!binding.refused.empty()) throw Refusal{403, binding.refused};
+    for (const Diagnostic& fault : binding.faults.all())
+        if (fault.severity == Severity::error) throw Refusal{409, fault.message};
+    if (!binding.bound) throw Refusal{409, "the text is not a look"};
+    binding.bound->effects_revision = effects_revision_;
+    return binding.bound;
+}
+
+void LookModel::capture_changed() {
+    const std::lock_guard lock(mutex_);
+    ++revision_;
+    bind();
 }
 
 void LookModel::undo() {
@@ -182,19 +212,49 @@ void LookModel::redo() {
     bind();
 }
 
-void LookModel::save() {
+std::filesystem::path LookModel::saved_path() const {
+    const std::lock_guard lock(mutex_);
+    if (file_ != File::there) throw Refusal{409, "the look has no file yet: save it first"};
+    return path_;
+}
+
+/// Where a look without a name is saved as `name`.
+std::filesystem::path LookModel::named(const std::string& name) const {
+    constexpr std::size_t kLongestName = 200;  // bytes; file systems take 255 with what AtomicFile adds
+    constexpr std::string_view kEnding = ".json";
+    if (name.empty()) throw Refusal{400, "the look has no name yet: save it under one"};
+    const bool has_control = std::ranges::any_of(name, [](unsigned char c) { return c < 32 || c == 127; });
+    if (name.size() > kLongestName || name.front() == '.' || has_control ||
+        name.find('/') != std::string::npos)
+        throw Refusal{400, "'" + name +
+                               "' is not a name for the look: use at most 200 bytes without '/', and no '.' "
+                               "in front"};
+    const std::filesystem::path path =
+        path_.parent_path() / (name.ends_with(kEnding) ? name : name + std::string(kEnding));
+    std::error_code failure;
+    if (std::filesystem::symlink_status(path, failure).type() != std::filesystem::file_type::not_found)
+        throw Refusal{409, path.string() + " is there already; choose another name"};
+    return path;
+}
+
+void LookModel::save(const std::string& name) {
     const std::lock_guard lock(mutex_);
     if (read_only_)
         throw Refusal{403, "the look is not written: the program runs with " + spelled(Option::read_only)};
-    if (!replace_text_file(path_, saved_text_, texts_[at_]))
-        throw Refusal{409, path_.string() + " was changed by another program; nothing was written"};
+    if (!name.empty() && file_ != File::unnamed)
+        throw Refusal{409, "the look is " + path_.string() + ", and keeps this name"};
+    const std::filesystem::path path = file_ == File::unnamed ? named(name) : path_;
+    if (!replace_text_file(path, file_ == File::there ? saved_text_ : "", texts_[at_]))
+        throw Refusal{409, path.string() + " was changed by another program; nothing was written"};
+    path_ = path;
+    file_ = File::there;
     saved_text_ = texts_[at_];
     saved_revision_ = revision_;
 }
 
 void LookModel::follow_file() {
     const std::lock_guard lock(mutex_);
-    if (texts_[at_] != saved_text_) return;
+    if (file_ != File::there || texts_[at_] != saved_text_) return;
     std::string fault;
     std::string on_disk = read_regular_file(path_, kMaxDocumentBytes, fault);
     if (!fault.empty() || on_disk == saved_text_) return;
@@ -249,7 +309,11 @@ EffectFiles LookModel::files_of(const std::string& effect) const {
 nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
     const std::lock_guard lock(mutex_);
     nlohmann::ordered_json state;
-    state["look"] = {{"path", path_.string()}, {"name", path_.filename().string()}};
+    state["look"] = {{"path", path_.string()},
+                     {"name", path_.filename().string()},
+                     {"folder", path_.parent_path().string()},
+                     {"has_file", file_ == File::there},
+                     {"has_name", file_ != File::unnamed}};
     state["capture"] = nullptr;
     state["read_only"] = read_only_;
     state["revision"] = revision_;

@@ -33,13 +33,20 @@ struct Undrawable {
 class LookModel {
 public:
     using FindEffects = std::function<std::shared_ptr<EffectRegistry>()>;
+    enum class File {
+        there,
+        fresh,   ///< the first save makes it
+        unnamed  ///< the first save names it, and makes it in the path's folder
+    };
 
-    /// Reads the file. Throws Error(ErrorKind::usage) where it cannot be read. Edits may name files of the
-    /// look's folder, of `folders`, and of those of --allow-path, and each file that the look on disk names.
+    /// Reads the file; a look without one has no steps. Throws Error(ErrorKind::usage) where it cannot be
+    /// read. Edits may name files of the look's folder once it has a name, of `folders`, and of those of
+    /// --allow-path, and each file that the look on disk names.
     LookModel(std::filesystem::path path, FindEffects find_effects, bool read_only,
-              std::vector<std::filesystem::path> folders = {});
+              std::vector<std::filesystem::path> folders = {}, File file = File::there);
 
-    const std::filesystem::path& path() const { return path_; }
+    /// Throws Refusal before the look has a file.
+    std::filesystem::path saved_path() const;
     /// The last text without faults, bound; nullptr before there was one.
     std::shared_ptr<const BoundText> bound() const;
 
@@ -47,8 +54,13 @@ public:
     void edit(std::uint64_t revision, const nlohmann::ordered_json& edits);
     void undo();
     void redo();
-    /// Writes the file, whole or not at all. Throws Error(ErrorKind::output) too.
-    void save();
+    /// Writes the file, whole or not at all; `name` is that of a look without one. A file that was not the
+    /// look's before is never replaced. Throws Error(ErrorKind::output) too.
+    void save(const std::string& name = "");
+    /// What the text would be after these edits, which are not made. Throws Refusal for its faults, too.
+    std::shared_ptr<const BoundText> tried(const nlohmann::ordered_json& edits);
+    /// Counts a change of what the look is seen on.
+    void capture_changed();
 
     /// Takes over what another program wrote to the file, as one step of undo, faults and all. Nothing
     /// happens where the text here is not saved, or the file cannot be read or is longer than a look may be.
@@ -91,12 +103,16 @@ private:
     void bind();
     void change(std::string text, Binding binding);
 
-    std::filesystem::path path_;
+    std::string with_edits(const nlohmann::ordered_json& edits) const;
+    std::filesystem::path named(const std::string& name) const;
+
     FindEffects find_effects_;
     bool read_only_;
     std::vector<std::filesystem::path> folders_;
 
-    mutable std::mutex mutex_;                       // of what follows
+    mutable std::mutex mutex_;  // of what follows
+    std::filesystem::path path_;
+    File file_;
     std::set<std::filesystem::path> named_on_disk_;  // resolved
     std::shared_ptr<EffectRegistry> effects_;
     std::uint64_t effects_revision_ = 1;

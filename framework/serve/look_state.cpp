@@ -21,17 +21,18 @@ Json json_of(const std::string& text) {
     return value.is_discarded() ? Json(text) : value;
 }
 
-/// "capture: camera.focus_distance"
+/// "capture: camera.focus_distance"; `resolved` is null where only a picture has the value.
 std::string origin_word(const PipelineStep& step, const ParamSpec& spec, const Json* literal,
-                        const ResolvedValue& resolved) {
+                        const ResolvedValue* resolved) {
     if (literal && literal->is_object() && literal->contains("var")) return "variable";
     const auto asked = step.values.find(spec.name);
     if (asked == step.values.end())
-        return resolved.origin == "the manifest" ? "default" : "capture: " + spec.from;
+        return resolved && resolved->origin == "the manifest" ? "default" : "capture: " + spec.from;
     if (std::holds_alternative<KeyedValue>(asked->second)) return "key";
     if (const auto* camera = std::get_if<CameraValue>(&asked->second))
         return "capture: camera." + camera->field;
-    if (std::holds_alternative<DepthValue>(asked->second)) return "capture: depth";
+    if (const auto* pixels = std::get_if<PixelValue>(&asked->second))
+        return pixels->measure == PixelValue::Measure::depth ? "capture: depth" : "capture: luminance";
     const std::string& origin = step.origins.at(spec.name);
     return origin.starts_with("preset") ? "preset" : origin == "the look" ? "look" : origin;
 }
@@ -48,11 +49,11 @@ Json param_json(const PipelineStep* step, const ParamSpec& spec, const Json* lit
     try {
         const ResolvedValue resolved = resolve_param(*step, spec, frame);
         param["effective"] = json_of(format_value(spec, resolved.value));
-        param["from"] = origin_word(*step, spec, literal, resolved);
+        param["from"] = origin_word(*step, spec, literal, &resolved);
     } catch (const Error& error) {
         // A depth is taken from pixels, which only a picture has.
         param["effective"] = nullptr;
-        param["from"] = "capture";
+        param["from"] = origin_word(*step, spec, literal, nullptr);
         param["why"] = error.what();
     }
     return param;

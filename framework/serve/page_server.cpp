@@ -48,7 +48,9 @@ Json shallow_json(const std::string& text) {
     return depth > kDeepest || values > kMostValues || json.is_discarded() ? Json() : json;
 }
 
-Json capture_json(const Sequence& sequence, const CaptureHeader& header, const std::string& path) {
+Json capture_json(const ServedCapture& capture) {
+    const Sequence& sequence = capture.sequence;
+    const CaptureHeader& header = capture.header;
     Json roles = Json::array();
     for (const std::string& name : header.roles) {
         const auto contract = find_role(split_layer_role(name).role);
@@ -62,7 +64,7 @@ Json capture_json(const Sequence& sequence, const CaptureHeader& header, const s
     }
     Json truths = Json::object();
     for (const auto& [frame, names] : truths_of(sequence)) truths[std::to_string(frame)] = names;
-    return {{"path", path},
+    return {{"path", capture.name},
             {"frames", sequence.frames},
             {"fps", sequence.fps},
             {"width", header.display_window.width()},
@@ -74,19 +76,23 @@ Json capture_json(const Sequence& sequence, const CaptureHeader& header, const s
 }  // namespace
 
 Response PageServer::state() const {
-    Json state = setup_.look.state(setup_.header);
+    const auto capture = setup_.captures.now();
+    Json state = setup_.look.state(capture->header);
     if (setup_.pictures.last_final()) state["has_picture"] = true;
     state["effect_folders"] = Json::array();
     for (const auto& folder : setup_.effect_folders) state["effect_folders"].push_back(folder.string());
-    state["capture"] = capture_json(setup_.sequence, setup_.header, setup_.capture);
+    state["capture"] = capture_json(*capture);
     return json_response(state);
 }
 
 Response PageServer::change(const Request& request) {
     if (request.path == "/api/undo") setup_.look.undo();
     else if (request.path == "/api/redo") setup_.look.redo();
-    else if (request.path == "/api/save") setup_.look.save();
-    else {
+    else if (request.path == "/api/save") {
+        const Json body = shallow_json(request.body);
+        const bool has_name = body.is_object() && body.contains("name") && body["name"].is_string();
+        setup_.look.save(has_name ? body["name"].get<std::string>() : "");
+    } else {
         const Json body = shallow_json(request.body);
         if (!body.is_object() || !body.contains("revision") || !body["revision"].is_number_unsigned() ||
             !body.contains("edits"))
@@ -96,18 +102,26 @@ Response PageServer::change(const Request& request) {
     return state();
 }
 
-DrawRequest PageServer::request_of(const Request& request, DrawRequest::Kind kind) const {
+/// Of which frame of which capture.
+DrawRequest PageServer::place_of(const Request& request, DrawRequest::Kind kind) const {
     DrawRequest wanted;
     wanted.kind = kind;
+    const auto capture = setup_.captures.now();
+    wanted.capture = capture->name;
+    wanted.frame = number_of(request, "frame", capture->sequence.frames.front());
+    if (std::ranges::find(capture->sequence.frames, wanted.frame) == capture->sequence.frames.end())
+        throw Refusal{404, "the capture has no frame " + std::to_string(wanted.frame)};
+    return wanted;
+}
+
+DrawRequest PageServer::request_of(const Request& request, DrawRequest::Kind kind) const {
+    DrawRequest wanted = place_of(request, kind);
     const std::shared_ptr<const BoundText> look = setup_.look.bound();
     if (!look) throw Refusal{409, "the look has faults, and there was none without before it"};
     wanted.text = look->text;
     wanted.files = look->files;
     wanted.revision = look->revision;
     wanted.effects_revision = look->effects_revision;
-    wanted.frame = number_of(request, "frame", setup_.sequence.frames.front());
-    if (std::ranges::find(setup_.sequence.frames, wanted.frame) == setup_.sequence.frames.end())
-        throw Refusal{404, "the capture has no frame " + std::to_string(wanted.frame)};
     wanted.scale = number_of(request, "scale", 1);
     if (wanted.scale != 1 && wanted.scale != 2 && wanted.scale != 4)
         throw Refusal{400, "'scale' is 1, 2 or 4"};
@@ -134,8 +148,8 @@ DrawRequest PageServer::probe(const Request& request) const {
     DrawRequest wanted = request_of(request, DrawRequest::Kind::probe);
     wanted.x = number_of(request, "x", -1);
     wanted.y = number_of(request, "y", -1);
-    if (wanted.x < 0 || wanted.y < 0 || wanted.x >= setup_.header.display_window.width() ||
-        wanted.y >= setup_.header.display_window.height())
+    const Window window = setup_.captures.now()->header.display_window;
+    if (wanted.x < 0 || wanted.y < 0 || wanted.x >= window.width() || wanted.y >= window.height())
         throw Refusal{400, "'x' and 'y' are a pixel of the picture"};
     return wanted;
 }
@@ -146,11 +160,46 @@ DrawRequest PageServer::metrics(const Request& request) const {
     return wanted;
 }
 
+/// A small picture of the look as it would be after some edits.
+DrawRequest PageServer::thumbnail(const Request& request) {
+    constexpr int kWidth_px = 240, kMostDivisor = 64;  // the least and the most that `run --scale` takes
+    const Json body = shallow_json(request.body);
+    if (!body.is_object() || !body.contains("edits")) throw Refusal{400, "the body is {\"edits\": [...]}"};
+    DrawRequest wanted = place_of(request, DrawRequest::Kind::thumbnail);
+    const auto look = setup_.look.tried(body["edits"]);
+    wanted.text = look->text;
+    wanted.files = look->files;
+    wanted.effects_revision = look->effects_revision;
+    wanted.revision = ++tried_texts_;
+    const int width = setup_.captures.now()->header.display_window.width();
+    wanted.scale = std::clamp((width + kWidth_px - 1) / kWidth_px, 1, kMostDivisor);
+    return wanted;
+}
+
+DrawRequest PageServer::starts(const Request& request) const {
+    DrawRequest wanted = place_of(request, DrawRequest::Kind::starts);
+    wanted.effects_revision = setup_.look.effects_revision();
+    return wanted;
+}
+
+Response PageServer::take_capture(const Request& request) {
+    const Json body = shallow_json(request.body);
+    const auto is_size = [](const Json& size) { return size.is_null() || size.is_number_unsigned(); };
+    if (!body.is_object() || !body.contains("name") || !body["name"].is_string() ||
+        !is_size(body.value("bytes", Json())))
+        throw Refusal{400, "the body is {\"name\": TEXT, \"bytes\": SIZE of a file}"};
+    const Json bytes = body.value("bytes", Json());
+    setup_.captures.take(body["name"].get<std::string>(),
+                         bytes.is_null() ? std::nullopt : std::optional(bytes.get<std::uint64_t>()));
+    setup_.look.capture_changed();
+    return state();
+}
+
 Response PageServer::command() const {
-    const auto& frames = setup_.sequence.frames;
-    const char* output = frames.size() == 1 ? "out.png" : "out_####.png";
-    return json_response({{"command", printed_command({"aftershade", "run", setup_.look.path().string(),
-                                                       setup_.capture, "-o", output})}});
+    const auto capture = setup_.captures.now();
+    const char* output = capture->sequence.frames.size() == 1 ? "out.png" : "out_####.png";
+    return json_response({{"command", printed_command({"aftershade", "run", setup_.look.saved_path().string(),
+                                                       capture->name, "-o", output})}});
 }
 
 /// Has the effects read again where their files are not those that were read.
@@ -229,6 +278,11 @@ void PageServer::answer(const Request& request, const Reply& reply) {
               if (auto last = last_picture(request)) reply(std::move(*last));
               else setup_.pictures.run(picture(request), reply);
           }}},
+        {"/api/thumbnail", {"POST", [&] { setup_.thumbnails.run(thumbnail(request), reply); }}},
+        {"/api/starts", {"GET", [&] { setup_.thumbnails.run(starts(request), reply); }}},
+        {"/api/objects",
+         {"GET", [&] { setup_.thumbnails.run(place_of(request, DrawRequest::Kind::objects), reply); }}},
+        {"/api/capture", {"POST", now([&] { return take_capture(request); })}},
         {"/api/probe", {"GET", drawn([&] { return probe(request); })}},
         {"/api/histogram", {"GET", drawn([&] { return request_of(request, DrawRequest::Kind::histogram); })}},
         {"/api/metrics", {"GET", drawn([&] { return metrics(request); })}},

@@ -1,6 +1,8 @@
 // The answer of the page's server at each address.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -11,12 +13,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "framework/capture/capture.h"
-#include "framework/capture/sequence.h"
 #include "framework/effect/registry.h"
 #include "framework/serve/http_message.h"
 #include "framework/serve/look_model.h"
 #include "framework/serve/picture_queue.h"
+#include "framework/serve/served_capture.h"
 
 namespace aftershade::serve {
 
@@ -24,9 +25,8 @@ namespace aftershade::serve {
 struct PageSetup {
     LookModel& look;
     PictureQueue& pictures;
-    const Sequence& sequence;
-    const CaptureHeader& header;                        ///< of the first frame
-    std::string capture;                                ///< as the user named it
+    PictureQueue& thumbnails;  ///< of a process of its own, so that no picture waits for them
+    ServedCaptures& captures;
     std::vector<std::filesystem::path> effect_folders;  ///< those that the user named
 };
 
@@ -47,18 +47,23 @@ private:
     DrawRequest picture(const Request& request) const;
     DrawRequest probe(const Request& request) const;
     DrawRequest metrics(const Request& request) const;
+    DrawRequest thumbnail(const Request& request);
+    DrawRequest starts(const Request& request) const;
+    Response take_capture(const Request& request);
     Response command() const;
     Response changes();
     Response shaders(const Request& request) const;
     Response save_shader(const Request& request);
     Response new_effect(const Request& request);
     void follow_effects();
+    DrawRequest place_of(const Request& request, DrawRequest::Kind kind) const;
     DrawRequest request_of(const Request& request, DrawRequest::Kind kind) const;
 
     PageSetup setup_;
-    std::mutex bodies_;  // held while one is read
-    std::mutex mutex_;   // of what follows
-    std::string stamp_;  // of the effects as they were last read
+    std::mutex bodies_;                           // held while one is read
+    std::atomic<std::uint64_t> tried_texts_ = 0;  // each of which is another revision
+    std::mutex mutex_;                            // of what follows
+    std::string stamp_;                           // of the effects as they were last read
 };
 
 }  // namespace aftershade::serve

@@ -31,6 +31,22 @@ double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// [{"step", "param", "value"}] of the parameters whose value is taken from pixels.
+nlohmann::ordered_json measured_json(const Pipeline& pipeline, const Capture& capture) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    const FrameInputs frame = FrameSetting{}.inputs(capture);
+    for (const PipelineStep& step : pipeline.steps)
+        for (const ParamSpec& spec : step.manifest->params) {
+            const auto asked = step.values.find(spec.name);
+            if (asked == step.values.end() || pixel_values(asked->second).empty()) continue;
+            const std::string text = format_value(spec, resolve_param(step, spec, frame).value);
+            list.push_back({{"step", step.name},
+                            {"param", spec.name},
+                            {"value", nlohmann::ordered_json::parse(text, nullptr, false)}});
+        }
+    return list;
+}
+
 bool makes(const Pipeline& pipeline, const std::string& role) {
     return pipeline.writes_role(role);
 }
@@ -57,7 +73,8 @@ PictureMaker::~PictureMaker() = default;
 
 void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
     Pipeline pipeline = request.look->pipeline;
-    if (request.view.starts_with("tap:")) pipeline.taps = {tap_of(request.view, pipeline)};
+    if (request.view.starts_with("tap:") || request.view.starts_with(kSharpView))
+        pipeline.taps = {tap_of(request.view, pipeline)};
     const bool is_new = !scaled.pipeline || scaled.look->effects_revision != request.look->effects_revision ||
                         !pipeline.has_form_of(*scaled.pipeline);
     if (!scaled.pipeline) scaled.pipeline = std::make_unique<Pipeline>();
@@ -205,6 +222,12 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
     const CaptureHeader& header = scaled.loaded->captures.front()->header;
     times["warnings"] = header.warnings;
     for (const std::string& difference : header.differences) times["warnings"].push_back(difference);
+    const Capture& middle = *scaled.loaded->captures[scaled.loaded->captures.size() / 2];
+    times["measured"] = measured_json(*scaled.pipeline, middle);
+    if (request.view.starts_with(kSharpView)) {
+        const auto [near_m, far_m] = sharp_range_m(scaled.result.taps.begin()->second, middle);
+        if (near_m <= far_m) times["sharp_m"] = {near_m, far_m};
+    }
     // A header of HTTP is ASCII.
     made.times = times.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
     return made;
@@ -213,21 +236,30 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
 const Capture& PictureMaker::whole_capture(int frame) {
     if (!whole_ || whole_frame_ != frame) {
         whole_.reset();
+        objects_.reset();
         const int number = sequence_.file_number(frame, sequence_.subframes / 2);
-        const CaptureHeader header = reader_.read_header(number);
-        whole_ = std::make_unique<Capture>(reader_.read(number, header.roles));
+        whole_ = std::make_unique<Capture>(reader_.read(number, header_of(frame).roles));
         whole_frame_ = frame;
     }
     return *whole_;
+}
+
+const FrameObjects& PictureMaker::frame_objects(int frame) {
+    const Capture& whole = whole_capture(frame);
+    const int number = sequence_.file_number(frame, sequence_.subframes / 2);
+    if (!objects_) objects_.emplace(reader_, sequence_, number, whole);
+    return *objects_;
+}
+
+nlohmann::ordered_json PictureMaker::objects(int frame) {
+    return frame_objects(frame).list(reader_, sequence_.file_number(frame, sequence_.subframes / 2));
 }
 
 const Capture& PictureMaker::truth(int frame, const std::string& name) {
     const std::pair key(frame, name);
     if (!truth_ || truth_key_ != key) {
         truth_.reset();
-        const CaptureHeader header =
-            reader_.read_header(sequence_.file_number(frame, sequence_.subframes / 2));
-        truth_ = std::make_unique<Capture>(read_truth(sequence_, frame, name, header, limits_));
+        truth_ = std::make_unique<Capture>(read_truth(sequence_, frame, name, header_of(frame), limits_));
         truth_key_ = key;
     }
     return *truth_;
@@ -258,9 +290,25 @@ Image PictureMaker::difference(const PictureRequest& request, const std::string&
     return view_picture({"before", request.exposure_ev, {}, apart});
 }
 
+CaptureHeader PictureMaker::header_of(int frame) const {
+    return reader_.read_header(sequence_.file_number(frame, sequence_.subframes / 2));
+}
+
+std::string PictureMaker::focused_on_surface(const std::string& text, int frame) {
+    constexpr std::string_view kMiddle = "\"uv\": [0.5, 0.5]";
+    const std::size_t at = text.find(kMiddle);
+    if (at == std::string::npos) return text;
+    const auto place = nearest_surface(whole_capture(frame));
+    if (!place) return text;
+    const auto [u, v] = *place;
+    return text.substr(0, at) + fmt::format("\"uv\": [{:.4g}, {:.4g}]", u, v) +
+           text.substr(at + kMiddle.size());
+}
+
 nlohmann::ordered_json PictureMaker::probe(const PictureRequest& request, int x, int y) {
     const Capture& whole = whole_capture(request.frame);
     nlohmann::ordered_json json = probe_json(whole, x, y);
+    json["objects"] = frame_objects(request.frame).at(place_of_pixel(whole.header, x, y));
     PictureRequest full = request;
     full.scale = 1;
     full.view = "final";

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "framework/gpu/context.h"
 #include "framework/render/frame_drive.h"
 #include "framework/run/frame_loader.h"
+#include "framework/serve/frame_objects.h"
 #include "framework/serve/look_model.h"
 
 namespace aftershade::serve {
@@ -47,8 +49,14 @@ public:
     const gpu::ContextInfo& gl() const { return context_.info(); }
     /// Throws Error as `run` does.
     MadePicture make(const PictureRequest& request);
+    CaptureHeader header_of(int frame) const;
+    /// A look's text with the middle of the picture, where it focuses on that, replaced by the nearest place
+    /// that shows a surface: the middle may be sky.
+    std::string focused_on_surface(const std::string& text, int frame);
     /// Every role's value at a pixel of the whole picture, and the result's.
     nlohmann::ordered_json probe(const PictureRequest& request, int x, int y);
+    /// The names of what the frame shows, as FrameObjects::list() has them.
+    nlohmann::ordered_json objects(int frame);
     /// How many pixels of the final picture have each of 256 values.
     nlohmann::ordered_json histogram(const PictureRequest& request);
     /// How far the colour that the steps make is from a truth beside the frame.
@@ -90,6 +98,7 @@ private:
     Image difference(const PictureRequest& request, const std::string& truth);
     Image picture(const Scaled& scaled, const PictureRequest& request) const;
     const Capture& whole_capture(int frame);
+    const FrameObjects& frame_objects(int frame);
     const Capture& truth(int frame, const std::string& name);
 
     Sequence sequence_;
@@ -101,7 +110,8 @@ private:
     std::map<int, Scaled> scaled_;    // by scale
     std::unique_ptr<Capture> whole_;  // with every role, for probes
     int whole_frame_ = 0;
-    std::unique_ptr<Capture> truth_;  // the last that was requested
+    std::optional<FrameObjects> objects_;  // of the whole capture
+    std::unique_ptr<Capture> truth_;       // the last that was requested
     std::pair<int, std::string> truth_key_;
     int drawn_ = 0;  // steps, by the last draw(); 0 where everything was there
 };

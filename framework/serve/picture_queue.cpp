@@ -1,5 +1,6 @@
 #include "framework/serve/picture_queue.h"
 
+#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -30,8 +31,12 @@ bool replaces(const DrawRequest& newer, const DrawRequest& older) {
 
 }  // namespace
 
-PictureQueue::PictureQueue(RunDrawer run, Listener listener, const std::atomic<bool>& stop)
-    : listener_(std::move(listener)), stop_(stop), process_(std::move(run)), thread_([this] { loop(); }) {}
+PictureQueue::PictureQueue(RunDrawer run, Listener listener, const std::atomic<bool>& stop, Start start)
+    : listener_(std::move(listener)),
+      stop_(stop),
+      start_(start),
+      process_(std::move(run), start),
+      thread_([this] { loop(); }) {}
 
 PictureQueue::~PictureQueue() {
     {
@@ -49,9 +54,16 @@ void PictureQueue::loop() {
 }
 
 std::unique_ptr<PictureQueue::Task> PictureQueue::next() {
+    constexpr auto kRestAfter = std::chrono::minutes(1);
     std::unique_lock lock(mutex_);
     for (;;) {
-        waiting_.wait(lock, [&] { return ends_ || !tasks_.empty(); });
+        const auto has_work = [&] { return ends_ || !tasks_.empty(); };
+        if (start_ == Start::at_first_use && !waiting_.wait_for(lock, kRestAfter, has_work)) {
+            lock.unlock();
+            process_.rest();
+            lock.lock();
+        }
+        waiting_.wait(lock, has_work);
         if (ends_) return nullptr;
         if (!stop_) break;
         for (const auto& task : tasks_) task->reply(superseded());

@@ -28,8 +28,11 @@ public:
         std::function<void(const DrawRequest&, const Undrawable& why)> given_up;
     };
 
-    /// Waits for the context. Throws what DrawingProcess throws. Once `stop` is set, no work begins any more.
-    PictureQueue(RunDrawer run, Listener listener, const std::atomic<bool>& stop);
+    using Start = DrawingProcess::Start;
+    /// Waits for the context, unless the process starts at its first use: such a process ends after a minute
+    /// without a request, too. Throws what DrawingProcess throws. Once `stop` is set, no work begins any
+    /// more.
+    PictureQueue(RunDrawer run, Listener listener, const std::atomic<bool>& stop, Start start = Start::now);
     ~PictureQueue();
     PictureQueue(const PictureQueue&) = delete;
     PictureQueue& operator=(const PictureQueue&) = delete;
@@ -60,6 +63,7 @@ private:
 
     const Listener listener_;
     const std::atomic<bool>& stop_;
+    const Start start_;
     DrawingProcess process_;           // the thread's
     std::optional<GivenUp> given_up_;  // the thread's
     mutable std::mutex mutex_;         // of what follows

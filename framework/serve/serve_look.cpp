@@ -10,27 +10,24 @@
 #include "framework/serve/page_files.h"
 #include "framework/serve/page_server.h"
 #include "framework/serve/picture_queue.h"
+#include "framework/serve/served_capture.h"
 
 namespace aftershade::serve {
 
 namespace {
 
-CaptureHeader first_header(const ServeOptions& options) {
-    const CaptureReader reader(options.sequence, options.profiles, options.limits);
-    return reader.read_header(options.sequence.file_number(options.sequence.frames.front()));
+ServedCapture open_capture(const ServeOptions& options, const std::string& name) {
+    ServedCapture capture{name, options.open_sequence(name), {}};
+    const CaptureReader reader(capture.sequence, options.profiles, options.limits);
+    capture.header = reader.read_header(capture.sequence.file_number(capture.sequence.frames.front()));
+    return capture;
 }
 
 /// Besides the look's own.
-std::vector<std::filesystem::path> folders_to_read(const ServeOptions& options) {
+std::vector<std::filesystem::path> folders_to_read(const ServeOptions& options, const Sequence& sequence) {
     std::vector<std::filesystem::path> folders = options.effect_folders;
     folders.push_back(options.data_folder);
-    std::filesystem::path last;
-    for (const int frame : options.sequence.frames) {
-        std::filesystem::path folder =
-            options.sequence.path_of(options.sequence.file_number(frame)).parent_path();
-        if (folder != last || frame == options.sequence.frames.front()) folders.push_back(folder);
-        last = std::move(folder);
-    }
+    for (std::filesystem::path& folder : folders_of(sequence)) folders.push_back(std::move(folder));
     return folders;
 }
 
@@ -44,10 +41,11 @@ std::shared_ptr<EffectRegistry> find_effects(const ServeOptions& options) {
 
 void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
     const auto files = read_page_files(options.data_folder / "page");
-    const CaptureHeader header = first_header(options);
+    ServedCaptures captures(open_capture(options, options.capture),
+                            [&](const std::string& name) { return open_capture(options, name); });
     LookModel look(
         std::filesystem::absolute(options.look), [&] { return find_effects(options); }, options.read_only,
-        folders_to_read(options));
+        folders_to_read(options, captures.now()->sequence), options.look_file);
     Connections connections(options.port, {});
     const PictureQueue::Listener listener{
         [&](const DrawRequest& request) { look.drawn(request.text, request.effects_revision); },
@@ -55,7 +53,10 @@ void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
             look.give_up(request.text, request.effects_revision, why);
         }};
     PictureQueue pictures(options.run_drawer, listener, stop);
-    PageServer server({look, pictures, options.sequence, header, options.capture, options.effect_folders});
+    PictureQueue thumbnails(options.run_thumbnail_drawer,
+                            {[](const DrawRequest&) {}, [](const DrawRequest&, const Undrawable&) {}}, stop,
+                            PictureQueue::Start::at_first_use);
+    PageServer server({look, pictures, thumbnails, captures, options.effect_folders});
     const std::string token = random_token();
     if (options.ready)
         options.ready("http://127.0.0.1:" + std::to_string(connections.port()) + "/#token=" + token);

@@ -14,13 +14,16 @@
 #include "framework/file/exr_file.h"
 #include "framework/gpu/context.h"
 #include "framework/serve/drawing_process.h"
+#include "framework/serve/look_model.h"
 
 namespace aftershade::serve {
 
 struct ServeOptions {
     std::filesystem::path look;
+    LookModel::File look_file = LookModel::File::there;
     std::string capture;  ///< as the user named it
-    Sequence sequence;
+    /// By its name on the command line or on disk. Throws Error.
+    std::function<Sequence(const std::string& capture)> open_sequence;
     std::vector<Profile> profiles;
     ReadLimits limits{};
     gpu::GlChoice gl{};
@@ -34,6 +37,8 @@ struct ServeOptions {
 
     /// Runs the process that draws. Called again, on another thread, where it has ended.
     RunDrawer run_drawer;
+    /// The same, of one that gets no time that others want.
+    RunDrawer run_thumbnail_drawer;
 };
 
 /// Those of the options' folders and the shipped ones, read now.

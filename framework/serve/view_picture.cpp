@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -19,6 +20,9 @@ namespace aftershade::serve {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// The texture in which effects of a lens have signed radii of circles of confusion (glsl/lens).
+constexpr const char* kCoc = "coc";
 
 /// By `ev` stops, in linear light; alpha stays.
 void expose_display(Image& display, double ev) {
@@ -81,6 +85,46 @@ Image final_picture(const View& view) {
     return light_picture(*color, view);
 }
 
+/// Radius of the largest circle of confusion that counts as sharp, px: the limit of 1/1500 of the picture's
+/// diagonal is the usual one (Ray 2002, Applied Photographic Optics, on depth of field).
+float sharp_radius_px(const Image& coc) {
+    return float(std::hypot(coc.width(), coc.height()) / 1500 / 2);
+}
+
+/// -1 in front of what is sharp, 0 in it, 1 behind it.
+int side_of(const Image& coc, float limit, int x, int y) {
+    const float radius = coc.at(x, y, 0);
+    return radius < -limit ? -1 : radius > limit ? 1 : 0;
+}
+
+/// What is sharp keeps its colours. What lies in front of it is blue and what lies behind is orange, both
+/// grey by their light; the limits are lines of the same colours.
+Image sharpness_picture(const Image& coc, const View& view) {
+    const CaptureHeader& header = view.capture.header;
+    const auto color = view.capture.images.find(kColorRole);
+    if (color == view.capture.images.end() || color->second.width() != coc.width() ||
+        color->second.height() != coc.height())
+        throw Error(ErrorKind::usage, "the limits of sharpness are drawn over pictures with square pixels");
+    Image picture = display_of_color(color->second, header.primaries);
+    const float limit = sharp_radius_px(coc);
+    constexpr std::array<float, 3> kFront = {0.25f, 0.55f, 1}, kBehind = {1, 0.55f, 0.15f};
+    for (int y = 0; y < coc.height(); ++y)
+        for (int x = 0; x < coc.width(); ++x) {
+            const int side = side_of(coc, limit, x, y);
+            const int right = side_of(coc, limit, std::min(x + 1, coc.width() - 1), y);
+            const int below = side_of(coc, limit, x, std::min(y + 1, coc.height() - 1));
+            const int other = side != right ? right : below;
+            const bool is_limit = side != other;
+            if (side == 0 && !is_limit) continue;
+            const auto& tint = std::min(side, is_limit ? other : side) < 0 ? kFront : kBehind;
+            float grey = 0;
+            for (int c = 0; c < 3; ++c) grey += picture.at(x, y, c) / 3;
+            for (int c = 0; c < 3; ++c)
+                picture.at(x, y, c) = tint[std::size_t(c)] * (is_limit ? 1 : 0.15f + 0.55f * grey);
+        }
+    return cropped_display(picture, header.data_window, header.display_window);
+}
+
 Json number(double value) {
     if (std::isfinite(value)) return value;
     return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
@@ -95,18 +139,32 @@ Json values_at(const Image& image, int x, int y) {
     return values;
 }
 
-/// The place of a picture's pixel in the images of a capture.
-std::pair<int, int> place_of(const CaptureHeader& header, int x, int y) {
-    return {x + header.display_window.min_x - header.data_window.min_x,
-            y + header.display_window.min_y - header.data_window.min_y};
-}
-
 bool is_inside(const Image& image, std::pair<int, int> place) {
     return place.first >= 0 && place.second >= 0 && place.first < image.width() &&
            place.second < image.height();
 }
 
 }  // namespace
+
+std::pair<int, int> place_of_pixel(const CaptureHeader& header, int x, int y) {
+    return {x + header.display_window.min_x - header.data_window.min_x,
+            y + header.display_window.min_y - header.data_window.min_y};
+}
+
+std::pair<double, double> sharp_range_m(const Image& coc, const Capture& capture) {
+    std::pair<double, double> range(std::numeric_limits<double>::infinity(),
+                                    -std::numeric_limits<double>::infinity());
+    const auto depth = capture.images.find(kDepthRole);
+    if (depth == capture.images.end() || depth->second.floats().size() != coc.floats().size()) return range;
+    const float limit = sharp_radius_px(coc);
+    for (int y = 0; y < coc.height(); ++y)
+        for (int x = 0; x < coc.width(); ++x) {
+            const auto depth_m = double(depth->second.at(x, y, 0));
+            if (side_of(coc, limit, x, y) != 0 || !std::isfinite(depth_m)) continue;
+            range = {std::min(range.first, depth_m), std::max(range.second, depth_m)};
+        }
+    return range;
+}
 
 std::string unit_of_role(const std::string& role) {
     switch (kind_of_role(split_layer_role(role).role)) {
@@ -118,7 +176,8 @@ std::string unit_of_role(const std::string& role) {
 }
 
 Tap tap_of(const std::string& view, const Pipeline& pipeline) {
-    const std::string text = view.substr(view.find(':') + 1);
+    const std::string text =
+        view.substr(view.find(':') + 1) + (view.starts_with(kSharpView) ? std::string(".") + kCoc : "");
     const std::size_t dot = text.find('.');
     for (const PipelineStep& step : pipeline.steps) {
         if (dot == std::string::npos || step.name != text.substr(0, dot)) continue;
@@ -140,7 +199,7 @@ bool is_picture(const std::string& role) {
 }  // namespace
 
 bool is_false_color(const std::string& name) {
-    if (name.starts_with("tap:")) return true;
+    if (name.starts_with("tap:") || name.starts_with(kSharpView)) return true;
     const std::string role = name.starts_with("role:") ? name.substr(5) : "";
     return !role.empty() && role != kDisplayRole && !is_picture(role);
 }
@@ -154,6 +213,12 @@ Image view_picture(const View& view) {
         return light_picture(color->second, view);
     }
     const std::string what = view.name.substr(std::min(view.name.find(':') + 1, view.name.size()));
+    if (view.name.starts_with(kSharpView)) {
+        const auto coc = view.result.taps.find(what + "." + kCoc);
+        if (coc == view.result.taps.end())
+            throw Error(ErrorKind::usage, "no pass made the circles of confusion of '" + what + "'");
+        return sharpness_picture(coc->second, view);
+    }
     if (view.name.starts_with("tap:")) {
         const auto tap = view.result.taps.find(what);
         if (tap == view.result.taps.end())
@@ -169,7 +234,7 @@ Image view_picture(const View& view) {
 
 Json probe_json(const Capture& capture, int x, int y) {
     Json json = {{"x", x}, {"y", y}, {"roles", Json::array()}};
-    const auto place = place_of(capture.header, x, y);
+    const auto place = place_of_pixel(capture.header, x, y);
     for (const auto& [role, image] : capture.images) {
         Json entry = {{"name", role}, {"unit", unit_of_role(role)}, {"values", Json::array()}};
         if (is_inside(image, place)) entry["values"] = values_at(image, place.first, place.second);
@@ -179,13 +244,36 @@ Json probe_json(const Capture& capture, int x, int y) {
 }
 
 Json result_at(const FrameResult& result, const CaptureHeader& header, int x, int y) {
-    const auto place = place_of(header, x, y);
+    const auto place = place_of_pixel(header, x, y);
     for (const char* role : {kDisplayRole, kColorRole}) {
         const auto made = result.images.find(role);
         if (made != result.images.end() && is_inside(made->second, place))
             return values_at(made->second, place.first, place.second);
     }
     return nullptr;
+}
+
+std::optional<std::pair<double, double>> nearest_surface(const Capture& capture) {
+    const auto depth = capture.images.find(kDepthRole);
+    if (depth == capture.images.end()) return std::nullopt;
+    const Window& window = capture.header.display_window;
+    double least = std::numeric_limits<double>::infinity();
+    std::optional<std::pair<double, double>> nearest;
+    for (int y = 0; y < window.height(); ++y)
+        for (int x = 0; x < window.width(); ++x) {
+            const auto place = place_of_pixel(capture.header, x, y);
+            if (!is_inside(depth->second, place) ||
+                !std::isfinite(depth->second.at(place.first, place.second, 0)))
+                continue;
+            const auto side = [](int at, int size) { return at == size / 2 ? 0.5 : (at + 0.5) / size; };
+            const double u = side(x, window.width()), v = side(y, window.height());
+            const double distance = std::hypot(u - 0.5, v - 0.5);
+            if (distance < least) {
+                least = distance;
+                nearest = {u, v};
+            }
+        }
+    return nearest;
 }
 
 Json histogram_json(const Image& picture) {

@@ -2,7 +2,10 @@
 // colour; and their numbers.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -13,9 +16,12 @@
 
 namespace aftershade::serve {
 
+/// What a lens draws sharp, and the limits: "sharp:STEP".
+inline constexpr std::string_view kSharpView = "sharp:";
+
 /// [refers to what the caller keeps]
 struct View {
-    const std::string& name;  ///< final, before, tap:STEP.TEXTURE, role:NAME
+    const std::string& name;  ///< final, before, tap:STEP.TEXTURE, sharp:STEP, role:NAME
     double exposure_ev = 0;
     const FrameResult& result;
     const Capture& capture;
@@ -27,17 +33,29 @@ Image view_picture(const View& view);
 /// Whether a view's colours stand for numbers, and are not those of a picture.
 bool is_false_color(const std::string& name);
 
-/// The tap of "tap:STEP.TEXTURE". Throws Error(ErrorKind::usage) where the pipeline has none such.
+/// The distances between which a lens draws points no wider than 1/1500 of the picture's diagonal, m; with
+/// infinities where nothing is sharp. `coc` is in the working grid of the capture.
+std::pair<double, double> sharp_range_m(const Image& coc, const Capture& capture);
+
+/// The tap of "tap:STEP.TEXTURE", and of "sharp:STEP" the one with the circles of confusion. Throws
+/// Error(ErrorKind::usage) where the pipeline has none such.
 Tap tap_of(const std::string& view, const Pipeline& pipeline);
 
 /// "m", "px"; "" for pure numbers.
 std::string unit_of_role(const std::string& role);
+
+/// The place of a picture's pixel in the images of a capture.
+std::pair<int, int> place_of_pixel(const CaptureHeader& header, int x, int y);
 
 /// {"x", "y", "roles": [{"name", "unit", "values"}]} at a pixel of the display window; without values outside
 /// of the data window.
 nlohmann::ordered_json probe_json(const Capture& capture, int x, int y);
 /// [r, g, b, a] of what the steps made, or null where they made nothing there.
 nlohmann::ordered_json result_at(const FrameResult& result, const CaptureHeader& header, int x, int y);
+
+/// The place of the display window nearest to its middle whose depth is finite, from 0 to 1 right and down;
+/// nullopt without any.
+std::optional<std::pair<double, double>> nearest_surface(const Capture& capture);
 
 nlohmann::ordered_json histogram_json(const Image& picture);
 

@@ -47,10 +47,26 @@ TEST_F(Slip, OptionsComeAfterTheCommand) {
                 "aftershade run nothing.json in_0001.exr -o o.exr --effect-path x");
 }
 
-TEST_F(Slip, TheLookComesBeforeTheCapture) {
+TEST_F(Slip, ACaptureWithoutALookSaysWhatThereIsAndALineThatDraws) {
     write_frames(1, 1);
-    expect_hint({"serve", "in_0001.exr"}, "aftershade serve look.json in_0001.exr");
-    expect_hint({"run", "in_0001.exr", "-o", "o.exr"}, "aftershade run look.json in_0001.exr");
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"run", "in_0001.exr"}, {"run", "in_0001.exr", "-o", "o.exr"}}) {
+        const CommandResult result = run_aftershade(words, folder_.path());
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_NE(result.err.find("LOOK is missing"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("roles: albedo, color, depth, "), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("\n  noir "), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("aftershade serve in_0001.exr\n"), std::string::npos) << result.err;
+        const std::size_t begin = result.err.find("draw one: aftershade run ") + 25;
+        const std::string look = result.err.substr(begin, result.err.find(' ', begin) - begin);
+        EXPECT_EQ(result.err.substr(begin + look.size(), 23), " in_0001.exr -o out.png");
+        EXPECT_EQ(run_aftershade({"run", look, "in_0001.exr", "-o", "out.png"}, folder_.path()).exit_code, 0);
+        EXPECT_FALSE(std::filesystem::exists(folder_ / "o.exr"));
+    }
+    expect_hint({"run", "nothing.json"}, "capture is required");
+    expect_hint({"serve", "nothing.json"}, "aftershade serve nothing.json CAPTURE");
+    expect_hint({"serve"}, "aftershade serve [LOOK] CAPTURE");
+    expect_hint({"serve", "none/new.json", "in_0001.exr"}, "there is no folder");
 }
 
 TEST_F(Slip, ALookAndACaptureThatChangedPlacesAreNamedOnceEach) {

@@ -1,9 +1,14 @@
 // Every form that a value of a look may have, and what each gives for a frame.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "framework/base/error.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/file/png_file.h"
+#include "framework/image/color_space.h"
 #include "tests/file/png_chunks.h"
 #include "tests/render/effect_fixture.h"
 
@@ -17,6 +22,7 @@ protected:
                            R"("reach": { "type": "float", "unit": "m", "default": 5, "min": 0.1, "max": 100,
                                          "doc": "." },
                               "tint": { "type": "color", "default": [1, 1, 1], "doc": "." },
+                              "stops": { "type": "float", "unit": "ev", "default": 0, "doc": "." },
                               "falloff_at": { "type": "float", "default": 0.25, "doc": "." },
                               "mode": { "type": "enum", "values": ["soft", "hard"], "default": "soft",
                                         "doc": "." })");
@@ -94,6 +100,55 @@ TEST_F(ValueForms, DepthThatIsNotThereIsAnErrorOfTheCapture) {
             EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
         }
     }
+}
+
+TEST_F(ValueForms, KeysMayComeFromTheCaptureOfEachFrame) {
+    const std::string rack = R"({ "keys": { "10": { "from": "depth", "object": 2 }, "20": { "from": "depth",
+        "uv": [0.1, 0.9] }, "30": 4 }, "interpolation": "smooth" })";
+    for (const auto& [frame, expected] : {std::pair(1, 2.5),
+                                          {10, 2.5},
+                                          {12, 2.5 + 6.5 * (3 * 0.04 - 2 * 0.008)},
+                                          {20, 9.0},
+                                          {25, 6.5},
+                                          {40, 4.0}})
+        EXPECT_NEAR(reach(rack, scene(frame)), expected, 1e-6) << frame;
+    Capture moved = scene(10);
+    for (float& depth_m : moved.images.at("depth").floats()) depth_m += 1;
+    EXPECT_NEAR(reach(rack, moved), 3.5, 1e-6) << "the focus follows the object";
+    std::ranges::fill(moved.images.at("depth").floats(), std::numeric_limits<float>::infinity());
+    moved.header.frame = 30;
+    EXPECT_EQ(reach(rack, moved), 4) << "no key that does not count is taken from the frame";
+    const Bound bound(effects_, R"({ "aftershade": 1, "steps": [ { "effect": "shown", "params": { "reach":
+        { "keys": { "1": { "from": "depth", "object": "Ball" }, "24": { "from": "depth", "object": "Suzanne" } } } } } ] })");
+    EXPECT_EQ(bound.pipeline().object_names(), (std::vector<std::string>{"Ball", "Suzanne"}));
+    const auto roles = bound.pipeline().capture_roles();
+    for (const char* role : {"depth", "object_id"}) EXPECT_TRUE(std::ranges::count(roles, role)) << role;
+    EXPECT_NE(
+        faults(R"({ "keys": { "1": { "from": "depth", "uv": [2, 0] } } })").find("two numbers from 0 to 1"),
+        std::string::npos);
+}
+
+TEST_F(ValueForms, AnExposureMayBringAnObjectTo18PercentGrey) {
+    const auto exposure = [&](const std::string& value, const Capture& capture) {
+        const Bound bound(effects_,
+                          look_of(R"({ "effect": "shown", "params": { "stops": )" + value + " } }"));
+        EXPECT_EQ(bound.faults(), "");
+        FrameInputs frame;
+        frame.capture = &capture;
+        return std::get<double>(resolve_params(bound.pipeline().steps.at(0), frame).get("stops"));
+    };
+    const std::string of_box = R"({ "from": "luminance", "object": 2 })";
+    Capture capture = scene(1);
+    const double luminance = 0.2126 * 0.9 + 0.7152 * 0.2 + 0.0722 * 0.1;  // Rec. 709's weights
+    EXPECT_NEAR(exposure(of_box, capture), std::log2(0.18 / luminance), 1e-5);
+    for (float& light : capture.images.at("color").floats()) light *= 4;
+    EXPECT_NEAR(exposure(of_box, capture), std::log2(0.18 / luminance) - 2, 1e-5) << "two stops more light";
+    capture.header.primaries = *color_space_primaries("acescg");
+    const double ap1 = 0.2722287 * 0.9 + 0.6740818 * 0.2 + 0.0536895 * 0.1;  // S-2014-004, TRA_1's second row
+    EXPECT_NEAR(exposure(of_box, capture), std::log2(0.18 / ap1) - 2, 0.02) << "less the adaptation to D65";
+    std::ranges::fill(capture.images.at("color").floats(), 0.0f);
+    EXPECT_THROW(exposure(of_box, capture), Error);
+    EXPECT_NE(faults(of_box).find("luminance is in ev, which cannot be converted to m"), std::string::npos);
 }
 
 TEST_F(ValueForms, CameraValuesComeInTheParametersUnit) {

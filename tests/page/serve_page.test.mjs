@@ -1,6 +1,6 @@
 // The authoring page of `aftershade serve`, as its users have it: the program serves a look in a folder of its own.
 import assert from "node:assert/strict";
-import { spawn, spawnSync } from "node:child_process";
+import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
@@ -8,6 +8,7 @@ import { after, before, test } from "node:test";
 
 import { axeSource, openBrowser } from "./browser.mjs";
 import { random, randomEdit } from "./random_edits.mjs";
+import { drawn, openServed, startServer } from "./served.mjs";
 import { program } from "./suite.mjs";
 import { TINT, tintShader } from "./tint.mjs";
 
@@ -46,47 +47,11 @@ const serve = (text, ...words) => serveOver(capture, text, ...words);
 async function serveOver(capture, text = LOOK, ...words) {
   const look = join(folder, `look_${++count}.json`);
   writeFileSync(look, text);
-  const child = spawn(program, ["serve", look, capture, "--port", "0", ...words], { env: environment });
-  let errors = "";
-  child.stderr.on("data", (data) => (errors += data));
-  const address = await new Promise((ready, fail) => {
-    let out = "";
-    child.stdout.on("data", (data) => {
-      out += data;
-      const found = /http:\S+/.exec(out);
-      if (found) ready(found[0]);
-    });
-    child.on("exit", (code) => fail(new Error(`serve ended with ${code}: ${errors}`)));
-  });
-  const end = () =>
-    new Promise((done) => {
-      if (child.exitCode !== null) return done();
-      child.on("exit", done);
-      child.kill("SIGINT");
-    });
+  const { address, end } = await startServer([look, capture, ...words], { env: environment });
   return { look, address, end };
 }
 
-async function open(address, options = {}) {
-  const context = await browser.newContext({
-    viewport: { width: 1440, height: 900 },
-    reducedMotion: "reduce",
-    ...options,
-  });
-  context.setDefaultTimeout(Number(process.env.AFTERSHADE_PAGE_TIMEOUT ?? 60_000)); // for machines that are busy
-  const page = await context.newPage();
-  page.faults = [];
-  page.requests = [];
-  page.on("pageerror", (error) => page.faults.push(error.message));
-  page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
-  page.on("request", (request) => page.requests.push(request.url()));
-  await page.goto(address);
-  return page;
-}
-const drawn = async (page) => {
-  await page.waitForFunction(() => window.aftershade.store.state && "scale" in window.aftershade.viewer.canvas.dataset);
-  await page.evaluate(() => window.aftershade.settled());
-};
+const open = (address, options) => openServed(browser, address, options);
 const state = (page) => page.evaluate(() => window.aftershade.store.state);
 const textOf = async (page) => (await state(page)).text;
 const lookOf = async (page) => withoutComments(await textOf(page));
@@ -388,7 +353,7 @@ inPage("adds a step that is found by a word of its summary", async (page) => {
   const before = await textOf(page);
   await page.keyboard.press("a");
   await page.keyboard.type("grain");
-  const found = await page.locator("#found li").evaluateAll((nodes) => nodes.map((node) => node.dataset.effect));
+  const found = await page.locator("#found [role=option]").evaluateAll((nodes) => nodes.map((node) => node.dataset.effect));
   assert.equal(found[0], "film_grain");
   await page.getByLabel("Search effects by name and summary").fill("fireflies zzz");
   assert.equal(await page.getByText("No effect matches.").isVisible(), true);
@@ -720,12 +685,22 @@ inPage("sets the focus distance by a click in the picture", async (page) => {
   const box = await page.locator(".stage canvas").boundingBox();
   await page.mouse.click(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
   const look = await changed(page, before);
-  const depth = await page.evaluate(
-    () =>
-      [...document.querySelectorAll(".panel tbody tr")].find((node) => node.cells[0].textContent === "depth")?.cells[1]
-        .textContent,
-  );
-  assert.equal(parseFloat(look.steps[0].params.focus_distance), Number(depth));
+  const cell = (role) =>
+    page.evaluate(
+      (name) =>
+        [...document.querySelectorAll(".panel tbody tr")].find((node) => node.cells[0].textContent === name)?.cells[1]
+          .textContent,
+      role,
+    );
+  assert.deepEqual(look.steps[0].params.focus_distance, { from: "depth", object: Number(await cell("object_id")) });
+  // With Shift, the focus is at the point.
+  const followed = await textOf(page);
+  await focus.getByRole("button", { name: /^Pick/ }).click();
+  await page.keyboard.down("Shift");
+  await page.mouse.click(box.x + box.width / 2 + 1, box.y + box.height / 2 - 2);
+  await page.keyboard.up("Shift");
+  const point = await changed(page, followed);
+  assert.equal(point.steps[0].params.focus_distance, Number(await cell("depth")));
 });
 
 inPage("plots the histogram of the final picture", async (page) => {
@@ -1396,7 +1371,8 @@ inPage("can be used by the keyboard alone, with the focus in sight", async (page
     "Remove",
   ];
   for (const label of wanted) assert.ok(seen.has(label), `${label} in ${[...seen]}`);
-  // A step is added, moved, opened, changed and saved.
+  // A step is added, moved, opened, changed and saved; a letter in a field is text.
+  while (await page.evaluate(() => document.activeElement.matches("input[type=text]"))) await page.keyboard.press("Tab");
   await page.keyboard.press("s");
   await page.keyboard.press("a");
   await page.keyboard.type("sharpen");

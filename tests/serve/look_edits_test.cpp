@@ -252,6 +252,20 @@ TEST(LookModel, NeverWritesWhereItOnlyReadsNorOverAnotherProgramsChange) {
     EXPECT_EQ(read_text_file(path, ErrorKind::usage), "{}");
 }
 
+TEST(LookModel, NamesFilesOfItsFolderOnlyOnceItHasAName) {
+    const TemporaryFolder folder;
+    write_text_file(folder / "mask.png", "");
+    LookModel model(folder / "untitled.json", shipped_effects, false, {}, LookModel::File::unnamed);
+    const Json add = Json::parse(R"([{"op": "add", "at": 0, "effect": "vignette"}])");
+    const Json mask = Json::parse(R"([{"op": "mask", "step": 0, "value": {"file": "mask.png"}}])");
+    model.edit(1, add);
+    EXPECT_THROW(model.edit(model.revision(), mask), Refusal);
+    EXPECT_THROW(model.save(), Refusal);
+    model.save("mine");
+    EXPECT_NO_THROW(model.edit(model.revision(), mask));
+    EXPECT_EQ(model.saved_path(), folder / "mine.json");
+}
+
 TEST(LookModel, LosesNoEditWhereTwoSaveAtOnce) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder / "look.json";

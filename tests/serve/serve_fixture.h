@@ -41,10 +41,12 @@ protected:
             write_capture(capture, folder_ / ("in_000" + std::to_string(frame) + ".exr"));
         }
         change_frames();
-        write_text(folder_ / "look.json", look_);
+        if (look_name_ == "look.json") write_text(folder_ / look_name_, look_);
         write_text(folder_ / "secret.txt", "secret");
-        std::vector<std::string> words{"serve", "look.json", frames_ > 1 ? "in_####.exr" : "in_0001.exr",
-                                       "--backend", "software"};
+        std::vector<std::string> words{"serve"};
+        if (!look_name_.empty()) words.push_back(look_name_);
+        if (capture_.empty()) capture_ = frames_ > 1 ? "in_####.exr" : "in_0001.exr";
+        words.insert(words.end(), {capture_, "--backend", "software"});
         words.insert(words.end(), more.begin(), more.end());
         command_.emplace(aftershade_words(words), folder_.path(), environment_);
         ASSERT_TRUE(command_->wait_for_lines(1)) << command_->wait().err;
@@ -117,6 +119,8 @@ protected:
     bool has_nan_ = false;
     float pixel_aspect_ = 1;
     int frames_ = 1;
+    std::string look_name_ = "look.json";  ///< "": none is named
+    std::string capture_;                  ///< "": the frames
     std::string look_ = kLook;
     Environment environment_;
     int port_ = 0;

@@ -67,4 +67,10 @@ int EffectManifest::most_of(const CountSpec& count) const {
     return spec && spec->max ? int(*spec->max) : count.number;
 }
 
+const std::vector<std::string>& effect_groups() {
+    static const std::vector<std::string> groups = {"lens", "shutter", "scattering", "light",
+                                                    "film", "color",   "repair",     "diagnosis"};
+    return groups;
+}
+
 }  // namespace aftershade

@@ -324,10 +324,15 @@ inline constexpr int kMaxReachPx = 16384;
 /// How many frames before or behind its own an input may be of.
 inline constexpr int kMostFrameOffset = 3;
 
+/// "lens", "shutter" and so on, in the order in which lists have them.
+const std::vector<std::string>& effect_groups();
+
 struct EffectManifest {
     std::string id;
     std::string version;
     std::string summary;
+    std::string group;            ///< one of effect_groups(); "" for none
+    bool is_recommended = false;  ///< of its group, for what most looks need
     std::vector<std::string> sources;
     std::vector<ModuleSpec> modules;
     std::optional<Place>

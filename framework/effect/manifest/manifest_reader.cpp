@@ -24,6 +24,8 @@ void ManifestParser::identity(const Reader& document) {
         fault(id->place, "the id '" + id->string + "' is not the name of its folder, '" + folder + "'");
     manifest_.version = document.text("version");
     manifest_.summary = document.text("summary");
+    if (document.has("group")) manifest_.group = document.text("group");
+    manifest_.is_recommended = document.boolean("recommended");
     manifest_.sources = document.texts("sources");
     manifest_.accumulates_subframes = document.has("accumulates");
     if (const auto warmup = document.object("warmup"))

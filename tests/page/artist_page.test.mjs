@@ -1,0 +1,439 @@
+// An artist's way through the page: from a frame alone to a saved look, without a line of JSON.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import {
+  copyFileSync,
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  rmSync,
+  statSync,
+  symlinkSync,
+  writeFileSync,
+} from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+
+import { axeSource, openBrowser } from "./browser.mjs";
+import { drawn, openServed, startServer } from "./served.mjs";
+import { program } from "./suite.mjs";
+
+const root = resolve(import.meta.dirname, "../.."),
+  scene = join(root, "scenes/suzanne"),
+  capture = join(scene, "capture.json"), // of Blender: 480 x 270 px, frames 3 and 4
+  environment = { ...process.env, AFTERSHADE_BACKEND: "software" },
+  shots = process.env.AFTERSHADE_PAGE_SHOTS; // a folder for screenshots to be looked at
+
+let browser;
+before(async () => (browser = await openBrowser()));
+after(() => browser?.close());
+
+/** A page over a capture in a folder of its own; the page must not complain, unless `mayFail`. */
+function walk(name, work, { words = [capture], mayFail = false, ...options } = {}) {
+  test(name, { timeout: 400_000 }, async () => {
+    const folder = mkdtempSync(join(tmpdir(), "aftershade-artist-"));
+    let server, page;
+    try {
+      server = await startServer(typeof words === "function" ? words(folder) : words, { env: environment, cwd: folder });
+      page = await openServed(browser, server.address, options);
+      await drawn(page);
+      await work(page, folder);
+      if (!mayFail) assert.deepEqual(page.faults, []);
+    } finally {
+      await page?.context().close();
+      await server?.end();
+      rmSync(folder, { recursive: true, force: true });
+    }
+  });
+}
+const state = (page) => page.evaluate(() => window.aftershade.store.state);
+const steps = async (page) => (await state(page)).steps.map(({ effect }) => effect);
+const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`) });
+const allDrawn = (page, list, least) =>
+  page.waitForFunction(
+    ([selector, count]) => document.querySelectorAll(`${selector} canvas[data-drawn]`).length >= count,
+    [list, least],
+  );
+async function axe(page, place) {
+  if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(readFileSync(axeSource, "utf8"));
+  const { violations } = await page.evaluate(() => window.axe.run({ resultTypes: ["violations"] }));
+  assert.deepEqual(
+    violations.map(({ id, nodes }) => `${place}: ${id}: ${nodes.length} x ${nodes[0].html.slice(0, 160)}`),
+    [],
+  );
+}
+
+/** RGBA of a PNG file. */
+async function pixelsOf(file) {
+  const blank = await browser.newPage();
+  const bytes = await blank.evaluate(async (text) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${text}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+    canvas.getContext("2d").drawImage(image, 0, 0);
+    return [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data];
+  }, readFileSync(file).toString("base64"));
+  await blank.close();
+  return bytes;
+}
+
+for (const [colorScheme, width, height] of [
+  ["dark", 1440, 900],
+  ["light", 1440, 900],
+  ["dark", 390, 844],
+  ["light", 390, 844],
+])
+  walk(
+    `starts from a capture with looks as pictures of its frame, ${colorScheme}, ${width} px`,
+    async (page) => {
+      assert.deepEqual(await steps(page), []);
+      if (width < 1000) await page.locator(".gallery").scrollIntoViewIfNeeded();
+      await allDrawn(page, ".starts", 4);
+      const names = await page.locator(".starts .name").allInnerTexts();
+      assert.ok(names.length >= 5 && names.length <= 10 && names.includes("Portrait"), names.join());
+      await axe(page, "gallery");
+      await shot(page, `gallery_${colorScheme}_${width}`);
+    },
+    { viewport: { width, height }, colorScheme },
+  );
+
+walk("draws each starting look as `run` draws it, smaller", async (page, folder) => {
+  await allDrawn(page, ".starts", 2);
+  const { width, height, bytes } = await page.evaluate(() => {
+    const item = [...document.querySelectorAll(".starts li")].find((node) => node.innerText.startsWith("Noir"));
+    item.scrollIntoView();
+    const canvas = item.querySelector("canvas");
+    return new Promise((done) => {
+      const look = () =>
+        "drawn" in canvas.dataset
+          ? done({
+              width: canvas.width,
+              height: canvas.height,
+              bytes: [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data],
+            })
+          : setTimeout(look, 50);
+      look();
+    });
+  });
+  const run = spawnSync(
+    program,
+    ["run", join(root, "looks/noir.json"), capture, "--frames", "3", "--scale", "1/2", "-o", "noir.png"],
+    { cwd: folder, env: environment, encoding: "utf8" },
+  );
+  assert.equal(run.status, 0, run.stderr);
+  assert.deepEqual([width, height], [240, 135]);
+  assert.deepEqual(bytes, await pixelsOf(join(folder, "noir.png")));
+});
+
+walk("takes a starting look, and saves it under a name that it asks for, by keys alone", async (page, folder) => {
+  await allDrawn(page, ".starts", 1);
+  await page.locator(".start", { hasText: "Noir" }).focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => window.aftershade.store.state.steps.length === 4);
+  assert.equal(await page.locator(".gallery").isVisible(), false);
+  await page.keyboard.press("Control+s");
+  const dialog = page.locator(".save-dialog");
+  await dialog.waitFor();
+  await axe(page, "save");
+  await shot(page, "save");
+  await page.keyboard.type("../noir");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /not a name/.test(document.querySelector(".save-dialog .refusal").textContent));
+  page.faults.length = 0; // browsers report the refusal
+  await page.keyboard.press("Control+a");
+  await page.keyboard.type("my noir");
+  await page.keyboard.press("Enter");
+  await dialog.waitFor({ state: "hidden" });
+  assert.equal(readFileSync(join(folder, "my noir.json"), "utf8"), readFileSync(join(root, "looks/noir.json"), "utf8"));
+  assert.equal(await page.locator(".file").innerText(), "my noir.json");
+  await page.keyboard.press("Control+z"); // back to no steps, which is another look than the saved one
+  await page.waitForFunction(() => window.aftershade.store.state.steps.length === 0);
+  await page.locator(".gallery").waitFor();
+});
+
+walk(
+  "makes the file of a new look when it is saved, and never replaces one",
+  async (page, folder) => {
+    assert.equal(await page.locator(".mark").innerText(), "new");
+    assert.equal(existsSync(join(folder, "new.json")), false);
+    await page.evaluate(() => window.aftershade.store.edit([{ op: "add", at: 0, effect: "vignette" }]));
+    writeFileSync(join(folder, "new.json"), "{}");
+    assert.equal(await page.evaluate(() => window.aftershade.store.save()), false, "another program made it");
+    assert.equal(readFileSync(join(folder, "new.json"), "utf8"), "{}");
+    rmSync(join(folder, "new.json"));
+    assert.equal(await page.evaluate(() => window.aftershade.store.save()), true);
+    assert.equal(
+      readFileSync(join(folder, "new.json"), "utf8"),
+      '{\n  "aftershade": 1,\n  "steps": [\n    { "effect": "vignette" }\n  ]\n}\n',
+    );
+  },
+  { words: () => ["new.json", capture], mayFail: true },
+);
+
+/** Drops a file as a desktop does, as far as scripts can. */
+const drop = (page, name, bytes) =>
+  page.evaluate(
+    ([file, size]) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([new Uint8Array(size)], file));
+      document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+    },
+    [name, bytes],
+  );
+
+walk(
+  "takes what is dropped from below the capture's folder, and says why it takes nothing else",
+  async (page, folder) => {
+    await page.evaluate(() => window.aftershade.store.edit([{ op: "add", at: 0, effect: "vignette" }]));
+    const { size } = statSync(join(scene, "gbuffer_0004.exr"));
+    await drop(page, "gbuffer_0004.exr", size);
+    await page.waitForFunction(() => window.aftershade.store.state.capture.path.endsWith("shots/gbuffer_0004.exr"));
+    await drawn(page);
+    assert.deepEqual((await state(page)).capture.frames, [4]);
+    assert.equal((await state(page)).steps.length, 1, "the look stays");
+    await page.evaluate(() => window.aftershade.store.takeCapture({ name: "more" }));
+    assert.ok((await state(page)).capture.path.endsWith("shots/more"));
+    await drop(page, "gbuffer_0004.exr", size - 1);
+    await page.waitForFunction(() => /or below, where this server may read/.test(document.body.innerText));
+    await drop(page, "secret.exr", size);
+    await page.waitForFunction(() => /'secret.exr' is not in/.test(document.body.innerText));
+    assert.ok((await state(page)).capture.path.endsWith("shots/more"));
+    assert.ok(existsSync(join(folder, "secret.exr")), "it is there, beside the capture's folder");
+  },
+  {
+    mayFail: true,
+    words: (folder) => {
+      mkdirSync(join(folder, "shots/more"), { recursive: true });
+      for (const [from, to] of [
+        [3, "shots/gbuffer_0003.exr"],
+        [4, "shots/gbuffer_0004.exr"],
+        [3, "shots/more/in_0003.exr"],
+        [4, "secret.exr"],
+      ])
+        copyFileSync(join(scene, `gbuffer_000${from}.exr`), join(folder, to));
+      symlinkSync(join(folder, "secret.exr"), join(folder, "shots/more/secret.exr"));
+      return ["shots/gbuffer_0003.exr"];
+    },
+  },
+);
+
+// ---- names ----
+
+const blender = join(process.env.AFTERSHADE_CAPTURES ?? "/nowhere", "blender-versions/5.2.3"),
+  isThere = existsSync(blender);
+/** Two frames of Blender 5.2, with Cryptomattes of objects and of materials. */
+const walkBlender = (name, work, options) =>
+  isThere
+    ? walk(name, work, {
+        words: (folder) => {
+          for (const frame of [3, 4])
+            copyFileSync(join(blender, `multi_000${frame}.exr`), join(folder, `multi_000${frame}.exr`));
+          return ["multi_####.exr"];
+        },
+        ...options,
+      })
+    : test(name, { skip: `no ${blender}; set AFTERSHADE_CAPTURES` }, () => {});
+/** Clicks a place of the picture, in its pixels. */
+async function clickAt(page, x, y) {
+  const place = await page.evaluate(
+    ([px, py]) => {
+      const { picture, canvas } = window.aftershade.viewer,
+        box = canvas.getBoundingClientRect(),
+        [left, top] = picture.corner;
+      return [
+        box.left + (left + (px + 0.5) * picture.zoom) / devicePixelRatio,
+        box.top + (top + (py + 0.5) * picture.zoom) / devicePixelRatio,
+      ];
+    },
+    [x, y],
+  );
+  await page.mouse.click(...place);
+}
+const edit = (page, ...edits) => page.evaluate((list) => window.aftershade.store.edit(list), edits);
+async function opened(page, name) {
+  const card = page.locator(`.step[data-step="${name}"]`);
+  if ((await card.locator(".opener").getAttribute("aria-expanded")) === "false") await card.locator(".opener").click();
+  return card;
+}
+/** Waits until the parameter of the first step is this. */
+const until = (page, param, value) =>
+  page.waitForFunction(
+    ([name, wanted]) => {
+      const sorted = (one) => JSON.stringify(one, (_, v) => (v?.constructor === Object ? Object.fromEntries(Object.entries(v).sort()) : v));
+      return sorted(window.aftershade.store.state.steps[0].params[name]?.value) === sorted(wanted);
+    },
+    [param, value],
+  );
+const SUZANNE = [240, 120];
+
+walkBlender("shows and writes the names of Blender's objects and materials", async (page) => {
+  await edit(page, { op: "add", at: 0, effect: "vignette" }, { op: "add", at: 1, effect: "sss_gaussian" });
+  await edit(page, { op: "enable", step: 1, value: false });
+  await clickAt(page, ...SUZANNE);
+  const cell = (row) => page.locator(".panel tbody tr", { hasText: row }).first();
+  await page.waitForFunction(() => /Suzanne/.test(document.querySelector(".panel tbody")?.textContent));
+  assert.match(await cell("material").innerText(), /\S/);
+  assert.equal(await page.locator(".panel tbody th", { hasText: "object_id" }).count(), 0, "the name stands for it");
+  await shot(page, "names");
+  // A mask by a click, then a second object from the list.
+  const card = await opened(page, "vignette");
+  await card.getByLabel("Mask by").selectOption("object");
+  await card.getByRole("button", { name: "Pick the mask's object" }).click();
+  await clickAt(page, ...SUZANNE);
+  await page.waitForFunction(() => window.aftershade.store.state.steps[0].mask?.object === "Suzanne");
+  await card.getByRole("button", { name: "Choose objects of the mask" }).click();
+  await page.locator("#found-objects [role=option]").nth(3).waitFor();
+  const items = await page.locator("#found-objects [role=option]").allInnerTexts();
+  assert.ok(items.some((text) => /material/.test(text)) && items.some((text) => /object/.test(text)), items.join());
+  assert.ok(items.every((text) => /%/.test(text)));
+  await axe(page, "objects");
+  await shot(page, "objects");
+  await page.keyboard.type("ball object");
+  const first = (await page.locator("#found-objects .name").first().innerText()).trim();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction((name) => window.aftershade.store.state.steps[0].mask.object[1] === name, first);
+  // A number of the same object, in another look, is shown by its name.
+  const id = await page.evaluate(async () => {
+    const response = await fetch("/api/objects?frame=3", { headers: { "X-Aftershade-Token": location.hash.slice(7) } });
+    return (await response.json()).find(({ name }) => name === "Suzanne").id;
+  });
+  await edit(page, { op: "mask", step: 0, value: { object: id } });
+  await page.waitForFunction(() => document.querySelector('[aria-label="Mask\'s objects"]').value === "Suzanne");
+  // A line of a table.
+  const scattering = await opened(page, "sss_gaussian");
+  await scattering.getByRole("button", { name: /^Pick an object for/ }).first().click();
+  await clickAt(page, ...SUZANNE);
+  await page.waitForFunction(() => JSON.stringify(window.aftershade.store.state.steps[1].params).includes('"name":"Suzanne"'));
+});
+
+// ---- focus ----
+
+const numbered = (folder) => {
+  for (const frame of [3, 4])
+    copyFileSync(join(scene, `gbuffer_000${frame}.exr`), join(folder, `gbuffer_000${frame}.exr`));
+  const document = JSON.parse(readFileSync(capture, "utf8").replace(/^\s*\/\/.*$/gm, ""));
+  writeFileSync(
+    join(folder, "capture.json"),
+    JSON.stringify({ ...document, objects: { Suzanne: 1, Ball: 2, Cube: 3 } }),
+  );
+  return ["capture.json"];
+};
+
+walk(
+  "focuses on an object by a click, racks to another one, and draws both as `run` does",
+  async (page, folder) => {
+    await edit(page, { op: "add", at: 0, effect: "dof" }, { op: "add", at: 1, effect: "view_transform" });
+    await edit(page, { op: "set", step: 0, param: "f_number", value: 0.25 });
+    const card = await opened(page, "dof"),
+      row = card.locator('[data-param="focus_distance"]');
+    await row.getByRole("button", { name: /^Pick/ }).click();
+    await clickAt(page, ...SUZANNE);
+    await until(page, "focus_distance", { from: "depth", object: "Suzanne" });
+    assert.equal(await row.locator(".follows").innerText(), "Suzanne");
+    await page.waitForFunction(() => /^6\.\d+ m$/.test(document.querySelector(".bound .now-value").textContent));
+    await axe(page, "follows");
+    await shot(page, "follows");
+    // The limits of sharpness.
+    await page.getByLabel("View", { exact: true }).selectOption("sharp:dof");
+    await page.waitForFunction(() => /in front of 6\.\d+ m.*behind \d/.test(document.querySelector(".legend").textContent));
+    await page.evaluate(() => window.aftershade.settled());
+    await axe(page, "sharp");
+    await shot(page, "sharp");
+    await page.getByLabel("View", { exact: true }).selectOption("final");
+    // A key here, another one at frame 4.
+    await row.getByRole("button", { name: /^Key/ }).click();
+    const rack = (keys) => ({ keys, interpolation: "smooth" });
+    await until(page, "focus_distance", rack({ 3: { from: "depth", object: "Suzanne" } }));
+    await page.keyboard.press(".");
+    await row.getByRole("button", { name: /^Choose the object/ }).click();
+    await page.keyboard.type("ball");
+    await page.locator("#found-objects .name", { hasText: "Ball" }).waitFor();
+    await page.keyboard.press("Enter");
+    const keys = { 3: { from: "depth", object: "Suzanne" }, 4: { from: "depth", object: "Ball" } };
+    await until(page, "focus_distance", rack(keys));
+    assert.deepEqual((await row.locator(".rack .follows").allInnerTexts()), ["Suzanne", "Ball"]);
+    await page.evaluate(() => window.aftershade.settled());
+    await axe(page, "rack");
+    await shot(page, "rack");
+    await page.keyboard.press("Control+s");
+    await page.keyboard.type("rack");
+    await page.keyboard.press("Enter");
+    await page.locator(".save-dialog").waitFor({ state: "hidden" });
+    assert.match(readFileSync(join(folder, "rack.json"), "utf8"), /"3": \{ "from": "depth", "object": "Suzanne" \}/);
+    const drawnByRun = spawnSync(program, ["run", "rack.json", "capture.json", "-o", "out_####.png"], {
+      cwd: folder,
+      env: environment,
+      encoding: "utf8",
+    });
+    assert.equal(drawnByRun.status, 0, drawnByRun.stderr);
+    const shown = await page.evaluate(async () => {
+      const { store, viewer } = window.aftershade,
+        response = await fetch(`/api/picture?revision=${store.state.revision}&frame=${viewer.frame}&scale=1&view=final&exposure=0&format=png`, {
+          headers: { "X-Aftershade-Token": location.hash.slice(7) },
+        });
+      return [...new Uint8Array(await response.arrayBuffer())];
+    });
+    writeFileSync(join(folder, "shown.png"), Buffer.from(shown));
+    assert.deepEqual(await pixelsOf(join(folder, "shown.png")), await pixelsOf(join(folder, "out_0004.png")));
+    // Back to a number, by the keyboard: the last key goes, and Hold writes what it was.
+    await row.getByRole("button", { name: "Suzanne: go to frame 3" }).press("Enter");
+    await page.waitForFunction(() => window.aftershade.viewer.frame === 3);
+    await row.getByRole("button", { name: /^Remove the key.* frame 4$/ }).press("Enter");
+    await until(page, "focus_distance", rack({ 3: keys[3] }));
+    await row.getByRole("button", { name: /^Remove the key.* frame 3$/ }).press("Enter");
+    await until(page, "focus_distance", { from: "depth", object: "Suzanne" });
+    await page.waitForFunction(() => !document.querySelector(".bound button").disabled);
+    await row.getByRole("button", { name: /^Hold/ }).press("Enter");
+    await page.waitForFunction(() => typeof window.aftershade.store.state.steps[0].params.focus_distance.value === "number");
+  },
+  { words: numbered },
+);
+
+walk(
+  "sets an exposure by an object, whose light becomes 18 % grey",
+  async (page) => {
+    await edit(page, { op: "add", at: 0, effect: "view_transform" });
+    const row = (await opened(page, "view_transform")).locator('[data-param="exposure"]');
+    await row.getByRole("button", { name: /^Pick/ }).click();
+    await clickAt(page, ...SUZANNE);
+    await until(page, "exposure", { from: "luminance", object: "Suzanne" });
+    await page.waitForFunction(() => /^-?\d.* ev$/.test(document.querySelector(".bound .now-value").textContent));
+  },
+  { words: numbered },
+);
+
+// ---- effects ----
+
+for (const [colorScheme, width, height] of [
+  ["dark", 1440, 900],
+  ["light", 390, 844],
+])
+  walk(
+    `lists effects in groups, the recommended ones first, with pictures of this frame, ${colorScheme}, ${width} px`,
+    async (page) => {
+      await page.keyboard.press("a");
+      const groups = await page.locator("#found [role=group]").evaluateAll((nodes) =>
+        nodes.map((node) => [
+          node.getAttribute("aria-label"),
+          [...node.querySelectorAll("[role=option]")].map((one) => one.dataset.effect),
+        ]),
+      );
+      const listed = Object.fromEntries(groups);
+      assert.deepEqual(Object.keys(listed), ["Lens", "Shutter", "Scattering", "Light", "Film", "Colour", "Repair", "Diagnosis"]);
+      assert.equal(listed.Lens[0], "dof");
+      assert.ok(listed.Lens.includes("bokeh"));
+      assert.equal(listed.Shutter[0], "motion_blur");
+      await allDrawn(page, "#found", 3);
+      await axe(page, "groups");
+      await shot(page, `effects_${colorScheme}_${width}`);
+      await page.keyboard.type("depth of field");
+      assert.equal(await page.locator("#found [role=option]").first().getAttribute("data-effect"), "dof");
+      await page.keyboard.press("Enter");
+      await page.waitForFunction(() => window.aftershade.store.state.steps[0]?.effect === "dof");
+    },
+    { viewport: { width, height }, colorScheme },
+  );

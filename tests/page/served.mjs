@@ -1,0 +1,49 @@
+// `aftershade serve` as a process, and its page in the browser.
+import { spawn } from "node:child_process";
+
+import { program } from "./suite.mjs";
+
+/** {address, end()} of `aftershade serve` with these words. */
+export async function startServer(words, options) {
+  const child = spawn(program, ["serve", ...words, "--port", "0"], options);
+  let errors = "";
+  child.stderr.on("data", (data) => (errors += data));
+  const address = await new Promise((ready, fail) => {
+    let out = "";
+    child.stdout.on("data", (data) => {
+      out += data;
+      const found = /http:\S+/.exec(out);
+      if (found) ready(found[0]);
+    });
+    child.on("exit", (code) => fail(new Error(`serve ended with ${code}: ${errors}`)));
+  });
+  const end = () =>
+    new Promise((done) => {
+      if (child.exitCode !== null) return done();
+      child.on("exit", done);
+      child.kill("SIGINT");
+    });
+  return { address, end };
+}
+
+export async function openServed(browser, address, options = {}) {
+  const context = await browser.newContext({
+    viewport: { width: 1440, height: 900 },
+    reducedMotion: "reduce",
+    ...options,
+  });
+  context.setDefaultTimeout(Number(process.env.AFTERSHADE_PAGE_TIMEOUT ?? 60_000)); // for machines that are busy
+  const page = await context.newPage();
+  page.faults = [];
+  page.requests = [];
+  page.on("pageerror", (error) => page.faults.push(error.message));
+  page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
+  page.on("request", (request) => page.requests.push(request.url()));
+  await page.goto(address);
+  return page;
+}
+/** Once the picture of the present state is there, at full size. */
+export const drawn = async (page) => {
+  await page.waitForFunction(() => window.aftershade.store.state && "scale" in window.aftershade.viewer.canvas.dataset);
+  await page.evaluate(() => window.aftershade.settled());
+};
