@@ -85,14 +85,11 @@ std::vector<std::string> Pipeline::object_names() const {
     const auto add = [&](const TableKey& key) {
         if (!key.name.empty()) add_once(names, key.name);
     };
-    for (const PipelineStep& step : steps) {
-        for (const auto& [name, value] : step.values)
-            for (const PixelValue* pixels : pixel_values(value)) std::ranges::for_each(pixels->objects, add);
+    for (const PipelineStep& step : steps)
         for (const ParamSpec& spec : step.manifest->params)
             for (const ParamValue& value : step.known_values(spec))
                 if (is_param_buffer(spec.type))
                     for (const auto& [key, row] : spec.type->table.rows(value).rows) add(key);
-    }
     return names;
 }
 

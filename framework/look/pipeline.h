@@ -68,8 +68,8 @@ struct Pipeline {
 
     /// Roles that some step takes from the capture, required or not, and `color` for the outputs.
     std::vector<std::string> capture_roles() const;
-    /// Objects that parameters of steps name, for which object_id must hold the hashes of names; masks take
-    /// their coverage instead.
+    /// Objects that parameters of steps name, for which object_id must hold the hashes of names; masks
+    /// and values from pixels take their coverage instead.
     std::vector<std::string> object_names() const;
     /// Roles that some input takes from the capture `offset` frames after, or before where it is negative.
     std::vector<std::string> neighbour_roles(int offset) const;

@@ -193,14 +193,36 @@ private:
     std::array<double, 3> weights_;
 };
 
+/// By their coverage where they have names: so a look may name materials beside objects, which no single
+/// object_id has.
+std::string role_of_objects(const std::vector<TableKey>& objects) {
+    const bool has_name = std::ranges::any_of(objects, [](const TableKey& key) { return !key.name.empty(); });
+    return has_name ? coverage_role(objects) : std::string(kObjectIdRole);
+}
+
+/// The pixels that the objects cover by half or more.
+std::vector<std::size_t> pixels_of_objects(const std::vector<TableKey>& objects, const Capture& capture) {
+    std::vector<std::size_t> pixels;
+    const auto coverage = capture.images.find(role_of_objects(objects));
+    if (coverage != capture.images.end() && is_coverage_role(coverage->first)) {
+        const auto shares = coverage->second.floats();
+        for (std::size_t i = 0; i < shares.size(); ++i)
+            if (shares[i] >= 0.5f) pixels.push_back(i);
+        return pixels;
+    }
+    const std::vector<IdRange> wanted = id_ranges(objects);
+    const auto ids = capture.images.at(kObjectIdRole).uints();
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        if (contains(wanted, ids[i])) pixels.push_back(i);
+    return pixels;
+}
+
 double median_of_objects(const PixelValue& value, const std::string& label, const Capture& capture) {
     const Measured measured(value, capture);
     const std::vector<TableKey>& objects = value.objects;
-    const std::vector<IdRange> wanted = id_ranges(objects);
-    const auto ids = capture.images.at(kObjectIdRole).uints();
     std::vector<double> found;
-    for (std::size_t i = 0; i < ids.size(); ++i)
-        if (contains(wanted, ids[i]) && measured.is_there(measured.at(i))) found.push_back(measured.at(i));
+    for (const std::size_t pixel : pixels_of_objects(objects, capture))
+        if (measured.is_there(measured.at(pixel))) found.push_back(measured.at(pixel));
     if (found.empty()) {
         const bool is_one = objects.size() == 1 && objects[0].first == objects[0].last;
         std::vector<std::string> names;
@@ -291,12 +313,12 @@ std::string format_source(const ValueSource& source) {
 
 std::vector<std::string> roles_of(const ValueSource& source) {
     std::vector<std::string> roles;
-    const auto add = [&](const char* role) {
-        if (std::ranges::find(roles, role) == roles.end()) roles.emplace_back(role);
+    const auto add = [&](std::string role) {
+        if (std::ranges::find(roles, role) == roles.end()) roles.push_back(std::move(role));
     };
     for (const PixelValue* value : pixel_values(source)) {
-        add(value->measure == PixelValue::Measure::depth ? kDepthRole : kColorRole);
-        if (!value->objects.empty()) add(kObjectIdRole);
+        add(std::string(value->measure == PixelValue::Measure::depth ? kDepthRole : kColorRole));
+        if (!value->objects.empty()) add(role_of_objects(value->objects));
     }
     return roles;
 }
@@ -334,7 +356,10 @@ ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std:
     }
     const auto& pixels = std::get<PixelValue>(source);
     for (const std::string& role : roles_of(source))
-        if (!capture.images.contains(role)) refuse(label, capture.header, "the capture has no " + role);
+        if (!capture.images.contains(role) &&
+            !(is_coverage_role(role) && capture.images.contains(kObjectIdRole)))
+            refuse(label, capture.header,
+                   "the capture has no " + (is_coverage_role(role) ? std::string(kObjectIdRole) : role));
     const double value =
         pixels.uv ? value_at_point(pixels, label, capture) : median_of_objects(pixels, label, capture);
     return fitted(*convert_unit(value, unit_of(pixels.measure), spec.unit), spec, label,

@@ -138,6 +138,28 @@ TEST_F(ServeCrash, NoEditAndNoFileOfThePageWaitsForAPassThatDoesNotEnd) {
     EXPECT_GT(std::chrono::steady_clock::now() - begin, 4s) << "or nothing hung";
 }
 
+TEST_F(ServeCrash, NoPictureWaitsForAThumbnailThatDoesNotEnd) {
+    std::string lines;
+    for (int i = 0; i < 6'000; ++i) lines += "c = c * 1.01 + sin(c * " + std::to_string(i) + ".0);\n";
+    write_effect("long", lines);
+    start({"--effect-path", "effects", "--pass-timeout", "5"});
+    EXPECT_EQ(get("/api/picture?frame=1").status, 200);
+    const auto begin = std::chrono::steady_clock::now();
+    const Client waiting(port_);
+    const std::string body = R"({"edits": [{"op": "add", "at": 0, "effect": "long"}]})";
+    waiting.send(
+        head("POST /api/thumbnail?frame=1", "Content-Length: " + std::to_string(body.size()) + "\r\n") +
+        "\r\n" + body);
+    for (const double exposure : {1, 2, 3}) {
+        EXPECT_EQ(set(exposure).status, 200);
+        EXPECT_EQ(get("/api/picture?frame=1").status, 200);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 3s) << "the time of the pass is 5 s";
+    EXPECT_EQ(parsed(waiting.receive()).status, 409);
+    EXPECT_GT(std::chrono::steady_clock::now() - begin, 4s) << "or nothing hung";
+    EXPECT_TRUE(faults().empty()) << "a thumbnail is no fault of the look";
+}
+
 TEST_F(ServeCrash, AProcessThatCannotBeginAgainIsAnErrorOfThePictureAlone) {
     start();
     const std::string first = get("/api/picture?frame=1").body;
