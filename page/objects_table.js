@@ -4,7 +4,8 @@ import { field } from "./number.js";
 import * as values from "./values.js";
 
 /** The text of a line's objects, and the line's key for such a text: an id, ranges of ids, or a name. */
-const objectsOf = ({ object, objects, name }, names) => String(name ?? objects ?? (object === undefined ? "" : names.words(object)));
+const objectsOf = ({ object, objects, name }, names) =>
+  String(name ?? objects ?? (object === undefined ? "" : names.words(object)));
 /** The line's key for an object that was picked or chosen. */
 const lineOf = (key) => (typeof key === "number" ? { object: key } : { name: key });
 export function keyFrom(text) {
@@ -77,12 +78,10 @@ export function objectsTable({ label, columns, hasOthers, onRows, onOthers, obje
     },
   });
   add.node.placeholder = "2, 3-7, Wheel";
-  const picker = iconButton(
-    "pick",
-    `Pick an object for ${label}`,
-    () => objects.pick(picker, addLine),
-    { class: "icon-button picker", "aria-pressed": "false" },
-  );
+  const picker = iconButton("pick", `Pick an object for ${label}`, () => objects.pick(picker, addLine), {
+    class: "icon-button picker",
+    "aria-pressed": "false",
+  });
   const chooser = iconButton("list", `Choose an object for ${label} from a list`, () => objects.choose(addLine));
   const addLine = (key) => onRows([...rows, { ...lineOf(key), ...fresh() }]);
   // A profile has no default of its own: a new line begins with one that can be seen.
@@ -92,7 +91,11 @@ export function objectsTable({ label, columns, hasOthers, onRows, onOthers, obje
     "tr",
     {},
     element("td", {}, add.node),
-    element("td", { colspan: names.length, class: "quiet" }, element("span", { class: "adds" }, "adds a line", chooser)),
+    element(
+      "td",
+      { colspan: names.length, class: "quiet" },
+      element("span", { class: "adds" }, "adds a line", chooser),
+    ),
     element("td", {}, picker),
   );
   const othersLine =

@@ -59,7 +59,11 @@ export function rackControl({ label, parameter, commit, time, measured, objects 
     "linear",
   );
   choice.addEventListener("change", () => commit({ ...value, interpolation: choice.value }));
-  const moved = (keys, i, frame) => withKeys(value, keys.map(([at, one], k) => [k === i ? frame : at, one]));
+  const moved = (keys, i, frame) =>
+    withKeys(
+      value,
+      keys.map(([at, one], k) => [k === i ? frame : at, one]),
+    );
   const line = ([frame, one], i, keys) => {
     const at = field({
       label: `${label}, frame of key ${i + 1}`,

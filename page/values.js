@@ -139,3 +139,6 @@ export function sourceOf(from = "default") {
 
 export const milliseconds = (ms) => `${ms < 10 ? ms.toFixed(2) : ms < 100 ? ms.toFixed(1) : Math.round(ms)} ms`;
 export const megabytes = (bytes) => `${(bytes / 2 ** 20).toFixed(1)} MiB`;
+
+/** Whether an effect has the texture of the lens with signed radii of circles of confusion. */
+export const hasCircles = ({ textures = {}, outputs = {} } = {}) => "coc" in textures || "coc" in outputs;

@@ -6,11 +6,8 @@ import { keyedFrames } from "./keyed.js";
 import { field } from "./number.js";
 import { Pictures } from "./pictures.js";
 import { nameOf } from "./steps.js";
-import { quantity, short } from "./values.js";
+import { hasCircles, quantity, short } from "./values.js";
 import { listenToPointer } from "./viewer_input.js";
-
-/** Whether an effect has the texture of the lens with signed radii of circles of confusion. */
-const hasCircles = ({ textures = {}, outputs = {} } = {}) => "coc" in textures || "coc" in outputs;
 
 export class Viewer extends EventTarget {
   view = "final";

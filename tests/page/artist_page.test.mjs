@@ -36,7 +36,10 @@ function walk(name, work, { words = [capture], mayFail = false, ...options } = {
     const folder = mkdtempSync(join(tmpdir(), "aftershade-artist-"));
     let server, page;
     try {
-      server = await startServer(typeof words === "function" ? words(folder) : words, { env: environment, cwd: folder });
+      server = await startServer(typeof words === "function" ? words(folder) : words, {
+        env: environment,
+        cwd: folder,
+      });
       page = await openServed(browser, server.address, options);
       await drawn(page);
       await work(page, folder);
@@ -263,7 +266,8 @@ async function opened(page, name) {
 const until = (page, param, value) =>
   page.waitForFunction(
     ([name, wanted]) => {
-      const sorted = (one) => JSON.stringify(one, (_, v) => (v?.constructor === Object ? Object.fromEntries(Object.entries(v).sort()) : v));
+      const sorted = (one) =>
+        JSON.stringify(one, (_, v) => (v?.constructor === Object ? Object.fromEntries(Object.entries(v).sort()) : v));
       return sorted(window.aftershade.store.state.steps[0].params[name]?.value) === sorted(wanted);
     },
     [param, value],
@@ -305,9 +309,14 @@ walkBlender("shows and writes the names of Blender's objects and materials", asy
   await page.waitForFunction(() => document.querySelector('[aria-label="Mask\'s objects"]').value === "Suzanne");
   // A line of a table.
   const scattering = await opened(page, "sss_gaussian");
-  await scattering.getByRole("button", { name: /^Pick an object for/ }).first().click();
+  await scattering
+    .getByRole("button", { name: /^Pick an object for/ })
+    .first()
+    .click();
   await clickAt(page, ...SUZANNE);
-  await page.waitForFunction(() => JSON.stringify(window.aftershade.store.state.steps[1].params).includes('"name":"Suzanne"'));
+  await page.waitForFunction(() =>
+    JSON.stringify(window.aftershade.store.state.steps[1].params).includes('"name":"Suzanne"'),
+  );
 });
 
 // ---- focus ----
@@ -339,7 +348,9 @@ walk(
     await shot(page, "follows");
     // The limits of sharpness.
     await page.getByLabel("View", { exact: true }).selectOption("sharp:dof");
-    await page.waitForFunction(() => /in front of 6\.\d+ m.*behind \d/.test(document.querySelector(".legend").textContent));
+    await page.waitForFunction(() =>
+      /in front of 6\.\d+ m.*behind \d/.test(document.querySelector(".legend").textContent),
+    );
     await page.evaluate(() => window.aftershade.settled());
     await axe(page, "sharp");
     await shot(page, "sharp");
@@ -355,7 +366,7 @@ walk(
     await page.keyboard.press("Enter");
     const keys = { 3: { from: "depth", object: "Suzanne" }, 4: { from: "depth", object: "Ball" } };
     await until(page, "focus_distance", rack(keys));
-    assert.deepEqual((await row.locator(".rack .follows").allInnerTexts()), ["Suzanne", "Ball"]);
+    assert.deepEqual(await row.locator(".rack .follows").allInnerTexts(), ["Suzanne", "Ball"]);
     await page.evaluate(() => window.aftershade.settled());
     await axe(page, "rack");
     await shot(page, "rack");
@@ -372,9 +383,12 @@ walk(
     assert.equal(drawnByRun.status, 0, drawnByRun.stderr);
     const shown = await page.evaluate(async () => {
       const { store, viewer } = window.aftershade,
-        response = await fetch(`/api/picture?revision=${store.state.revision}&frame=${viewer.frame}&scale=1&view=final&exposure=0&format=png`, {
-          headers: { "X-Aftershade-Token": location.hash.slice(7) },
-        });
+        response = await fetch(
+          `/api/picture?revision=${store.state.revision}&frame=${viewer.frame}&scale=1&view=final&exposure=0&format=png`,
+          {
+            headers: { "X-Aftershade-Token": location.hash.slice(7) },
+          },
+        );
       return [...new Uint8Array(await response.arrayBuffer())];
     });
     writeFileSync(join(folder, "shown.png"), Buffer.from(shown));
@@ -388,7 +402,9 @@ walk(
     await until(page, "focus_distance", { from: "depth", object: "Suzanne" });
     await page.waitForFunction(() => !document.querySelector(".bound button").disabled);
     await row.getByRole("button", { name: /^Hold/ }).press("Enter");
-    await page.waitForFunction(() => typeof window.aftershade.store.state.steps[0].params.focus_distance.value === "number");
+    await page.waitForFunction(
+      () => typeof window.aftershade.store.state.steps[0].params.focus_distance.value === "number",
+    );
   },
   { words: numbered },
 );
@@ -416,14 +432,25 @@ for (const [colorScheme, width, height] of [
     `lists effects in groups, the recommended ones first, with pictures of this frame, ${colorScheme}, ${width} px`,
     async (page) => {
       await page.keyboard.press("a");
-      const groups = await page.locator("#found [role=group]").evaluateAll((nodes) =>
-        nodes.map((node) => [
-          node.getAttribute("aria-label"),
-          [...node.querySelectorAll("[role=option]")].map((one) => one.dataset.effect),
-        ]),
-      );
+      const groups = await page
+        .locator("#found [role=group]")
+        .evaluateAll((nodes) =>
+          nodes.map((node) => [
+            node.getAttribute("aria-label"),
+            [...node.querySelectorAll("[role=option]")].map((one) => one.dataset.effect),
+          ]),
+        );
       const listed = Object.fromEntries(groups);
-      assert.deepEqual(Object.keys(listed), ["Lens", "Shutter", "Scattering", "Light", "Film", "Colour", "Repair", "Diagnosis"]);
+      assert.deepEqual(Object.keys(listed), [
+        "Lens",
+        "Shutter",
+        "Scattering",
+        "Light",
+        "Film",
+        "Colour",
+        "Repair",
+        "Diagnosis",
+      ]);
       assert.equal(listed.Lens[0], "dof");
       assert.ok(listed.Lens.includes("bokeh"));
       assert.equal(listed.Shutter[0], "motion_blur");
