@@ -96,7 +96,7 @@ private:
 using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue,
                                 TableValue, OpaqueValue>;
 
-/// The file of a file parameter: a picture (EXR, PNG), or a colour table (.cube, Adobe Cube LUT 1.0).
+/// The file of a file parameter: a picture (EXR, PNG, JPEG), or a colour table (.cube, Adobe Cube LUT 1.0).
 enum class FileKind { image, lut };
 
 /// "requires": ["> focal_length"]: how this value stands to another parameter's, units minded.
@@ -121,6 +121,7 @@ struct ParamSpec {
     std::optional<double> max;
     std::optional<std::array<double, 2>> ui_range;  ///< a slider's ends, within min and max
     std::vector<std::string> values;                ///< enum_
+    std::vector<int> numbers;                       ///< enum_: stand for its values, too; or none
     ParamBind bind = ParamBind::uniform;
     std::string from;  ///< "camera.focus_distance": the default where the capture has that value
     std::optional<ParamValue> identity;  ///< the value that leaves the image as it is

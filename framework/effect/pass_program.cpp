@@ -11,6 +11,7 @@
 #include "framework/base/error.h"
 #include "framework/document/glsl_text.h"
 #include "framework/effect/glsl_tokens.h"
+#include "framework/effect/isf/isf_text.h"
 #include "framework/effect/usage_check.h"
 
 namespace aftershade {
@@ -31,6 +32,10 @@ Place named_place(const ShaderSource& source, const std::string& message) {
 }
 
 Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message) {
+    // The host renames the main() of an ISF file, to draw around it.
+    if (message.text.find("isf_main") != std::string::npos)
+        for (const Token& token : glsl_tokens(source))
+            if (token.text == "isf_main" && is_isf_shader(*token.file)) return token.place();
     if (message.line < 1 || message.line > int(source.lines.size())) return named_place(source, message.text);
     const SourceLine& line = source.lines[std::size_t(message.line) - 1];
     return {line.file.text(), line.line, message.column};
@@ -315,7 +320,10 @@ std::shared_ptr<const gpu::Program> ProgramCache::get(const ShaderContext& conte
             add_hints(*context.manifest, glsl_folder_, source, faults);
             for (const gpu::ShaderMessage& message : error.messages())
                 if (message.error)
-                    faults.error(author_place(source, message), message.text + "   [" + where + "]");
+                    faults.error(author_place(source, message),
+                                 (is_isf_path(context.manifest->document) ? with_isf_names(message.text)
+                                                                          : message.text) +
+                                     "   [" + where + "]");
             if (!faults.has_errors()) faults.error({(pass.folder / pass.shader).string()}, error.what());
         }
     }

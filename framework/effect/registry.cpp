@@ -37,7 +37,7 @@ void EffectRegistry::add_effects_in(const fs::path& folder) {
         } else if (is_isf_path(effect) && fs::is_regular_file(effect, unreadable)) {
             const std::string id = effect.stem().string();
             add(id, effect);
-            isf_names_.emplace(snake_case(id), id);
+            isf_names_[snake_case(id)].push_back(effect);
         } else if (type == fs::file_type::none) unreadable_.emplace(effect, unreadable.message());
     }
     if (failure && failure != std::errc::no_such_file_or_directory)
@@ -66,7 +66,7 @@ void EffectRegistry::warn_of_hidden(Diagnostics& diagnostics) const {
 const fs::path* EffectRegistry::folder(const std::string& id) const {
     auto found = folders_.find(id);
     const auto name = isf_names_.find(id);
-    if (found == folders_.end() && name != isf_names_.end()) found = folders_.find(name->second);
+    if (found == folders_.end() && name != isf_names_.end()) return &name->second.front();
     return found == folders_.end() ? nullptr : &found->second;
 }
 
@@ -106,6 +106,14 @@ void add_once(Diagnostics& diagnostics, const Diagnostic& fault) {
 
 }  // namespace
 
+std::string EffectRegistry::namesake_of(const std::string& id, const fs::path& file) const {
+    const auto files = isf_names_.find(id);
+    if (files == isf_names_.end() || folders_.contains(id)) return "";
+    for (const fs::path& other : files->second)
+        if (other != file && other.parent_path() == file.parent_path()) return other.string();
+    return "";
+}
+
 std::optional<EffectManifest> EffectRegistry::read(const fs::path& place, IsfSpace space,
                                                    Diagnostics& diagnostics) {
     if (is_isf_path(place)) return read_isf_manifest(place, space, glsl_folder_, diagnostics);
@@ -116,6 +124,13 @@ std::optional<EffectManifest> EffectRegistry::read(const fs::path& place, IsfSpa
 const EffectManifest* EffectRegistry::find(const std::string& id, Diagnostics& diagnostics, IsfSpace space) {
     const auto place = place_of(id);
     if (!place) return nullptr;
+    if (const std::string other = namesake_of(id, *place); !other.empty()) {
+        add_once(diagnostics, {Severity::error,
+                               {place->string()},
+                               "'" + id + "' is the id of this file and of " + other +
+                                   " (name the effect by the file's name or path, or rename one)"});
+        return nullptr;
+    }
     const Key key(place->string(), space);
     auto manifest = manifests_.find(key);
     if (manifest == manifests_.end()) {

@@ -19,8 +19,9 @@ namespace aftershade {
 std::vector<std::filesystem::path> rooms_of_effects(const std::filesystem::path& folder);
 
 /// Folders of effects, searched in order; each effect is a folder <id>/ with an effect.json, or an ISF file,
-/// whose id is its name without ".fs" or that in snake_case. The path of an ISF file is an id, too.
-/// [one thread at a time: manifests are read when they are first asked for]
+/// whose id is its name without ".fs" or that in snake_case, unless two files of one folder have that. The
+/// path of an ISF file is an id, too. [one thread at a time: manifests are read when they are first asked
+/// for]
 class EffectRegistry {
 public:
     /// Modules are read from `glsl_folder`, empty for the shipped one.
@@ -47,14 +48,16 @@ private:
     void add_effects_in(const std::filesystem::path& folder);
     void add(const std::string& id, const std::filesystem::path& effect);
     std::optional<std::filesystem::path> place_of(const std::string& id) const;
+    /// Another ISF file of the folder with the same snake_case, by which `id` names them; "": none.
+    std::string namesake_of(const std::string& id, const std::filesystem::path& file) const;
     std::optional<EffectManifest> read(const std::filesystem::path& place, IsfSpace space,
                                        Diagnostics& diagnostics);
 
     std::filesystem::path glsl_folder_;
-    std::map<std::string, std::filesystem::path> folders_;               // by id; of ISF the files
-    std::map<std::string, std::string> isf_names_;                       // ids of ISF files, by snake_case
-    std::map<std::filesystem::path, std::string> unreadable_;            // reasons
-    std::vector<std::pair<std::string, std::filesystem::path>> hidden_;  // ids and folders
+    std::map<std::string, std::filesystem::path> folders_;                 // by id; of ISF the files
+    std::map<std::string, std::vector<std::filesystem::path>> isf_names_;  // ISF files by their snake_case
+    std::map<std::filesystem::path, std::string> unreadable_;              // reasons
+    std::vector<std::pair<std::string, std::filesystem::path>> hidden_;    // ids and folders
     using Key = std::pair<std::string, IsfSpace>;
     std::map<Key, std::optional<EffectManifest>> manifests_;
     std::map<Key, std::vector<Diagnostic>> faults_;  // of the manifests that are nullopt

@@ -9,6 +9,7 @@
 #include "framework/base/atomic_file.h"
 #include "framework/base/path_bounds.h"
 #include "framework/effect/glsl_tokens.h"
+#include "framework/effect/isf/isf_types.h"
 
 namespace aftershade {
 
@@ -84,7 +85,8 @@ private:
     void add_file(const fs::path& file, const Place& from) {
         if (!included_.insert(file).second) return;
         if (const std::string* text = context_.manifest->find_generated(file))
-            return add_text(*text, context_.manifest->document.string(), 1);
+            return is_foreign(file.string()) ? add_text(*text, file.string(), 0)
+                                             : add_text(*text, context_.manifest->document.string(), 1);
         const ShaderTexts::File& read = texts_.of(file);
         if (!read.out_of_bounds.empty()) {
             diagnostics_.error(from, file.string() + " " + read.out_of_bounds);
@@ -136,9 +138,7 @@ private:
         add_line(line, file, number);
     }
 
-    bool is_foreign(const std::string& file) const {
-        return (file.ends_with(".fs") || file.ends_with(".vs")) && !source_.lines.empty();
-    }
+    bool is_foreign(const std::string& file) const { return is_isf_shader(file) && !source_.lines.empty(); }
 
     void add_include(bool shared, const std::string& name, const Place& place) {
         if (shared && name == "pass") {

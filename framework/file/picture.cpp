@@ -3,6 +3,7 @@
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/file/exr_file.h"
+#include "framework/file/jpeg_file.h"
 #include "framework/file/png_file.h"
 #include "framework/image/srgb.h"
 
@@ -51,9 +52,9 @@ Image read_exr_picture(const fs::path& path) {
     return image;
 }
 
-Image read_png_picture(const fs::path& path, PictureSpace space) {
+Image read_encoded_picture(const fs::path& path, PictureSpace space) {
     PngColor color;
-    const Image stored = read_png(path, &color);
+    const Image stored = is_jpeg_file(path) ? read_jpeg(path) : read_png(path, &color);
     if (space == PictureSpace::srgb && !color.is_srgb())
         throw Error(ErrorKind::capture, path.string() + ": its colours are not sRGB but of " + color.space +
                                             ", which is not converted; save the picture as sRGB");
@@ -78,7 +79,7 @@ Image read_png_picture(const fs::path& path, PictureSpace space) {
 }  // namespace
 
 Image read_picture(const fs::path& path, PictureSpace space) {
-    return is_exr_file(path) ? read_exr_picture(path) : read_png_picture(path, space);
+    return is_exr_file(path) ? read_exr_picture(path) : read_encoded_picture(path, space);
 }
 
 }  // namespace aftershade

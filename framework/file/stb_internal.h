@@ -1,5 +1,5 @@
-// stb_image and stb_image_write, compiled into the source that includes this. Define STBI_ONLY_PNG or
-// STBI_ONLY_HDR before it. Internal to framework/image.
+// stb_image and stb_image_write, compiled into the source that includes this. Define STBI_ONLY_PNG,
+// STBI_ONLY_JPEG or STBI_ONLY_HDR before it. Internal to framework/image.
 #pragma once
 
 #include <algorithm>

@@ -33,7 +33,10 @@ bool is_native_source(const fs::path& file) {
 void gather_shader(const EffectManifest& manifest, const fs::path& file, const fs::path& glsl_folder,
                    std::set<fs::path>& files, int depth = 0) {
     const std::string* generated = manifest.find_generated(file);
-    if (depth >= kMaxIncludeDepth || (!generated && !files.insert(file.lexically_normal()).second)) return;
+    std::error_code failure;
+    const bool is_file = !generated || fs::is_regular_file(file, failure);
+    if (depth >= kMaxIncludeDepth || (is_file && !files.insert(file.lexically_normal()).second && !generated))
+        return;
     std::string fault;
     std::istringstream lines(generated ? *generated : read_regular_file(file, kMaxShaderFileBytes, fault));
     if (!fault.empty()) throw Error(ErrorKind::usage, file.string() + ": " + fault);

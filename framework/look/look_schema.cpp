@@ -130,8 +130,8 @@ grammar::Block step_of_isf() {
         if (key.name == "effect")
             key = grammar::required(
                 "effect",
-                grammar::text(
-                    {.pattern = {R"(\.fs$)", [](const std::string& path) { return is_isf_path(path); }}}),
+                grammar::text({.pattern = {R"(\.[fF][sS]$)",
+                                           [](const std::string& path) { return is_isf_path(path); }}}),
                 "Path from the look's folder.");
     return block;
 }

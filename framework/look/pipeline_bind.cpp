@@ -173,6 +173,13 @@ private:
             return "";
         }
         if (std::filesystem::is_regular_file(path, failure)) return path.string();
+        if (std::filesystem::exists(path, failure)) {
+            const bool is_folder = std::filesystem::is_directory(path, failure);
+            diagnostics_.error(look_step.effect_place, "'" + path.string() + "' is " +
+                                                           (is_folder ? "a folder" : "a pipe or a device") +
+                                                           ", but an ISF file is needed");
+            return "";
+        }
         std::vector<std::string> files;
         for (const auto& entry : std::filesystem::directory_iterator(path.parent_path(), failure))
             if (is_isf_path(entry.path()))

@@ -27,6 +27,8 @@ bool takes_square_pixels(const EffectManifest& manifest) {
 }  // namespace
 
 SquareSteps::SquareSteps(const Pipeline& pipeline, const PixelStretch& stretch) : stretch_(stretch) {
+    for (const PipelineStep& step : pipeline.steps)
+        in_display_window_.push_back(step.manifest->is_in_display_window);
     if (stretch_.is_none()) return;
     const auto needs = [](const PipelineStep& step) { return takes_square_pixels(*step.manifest); };
     const auto& steps = pipeline.steps;
@@ -40,7 +42,8 @@ SquareSteps::SquareSteps(const Pipeline& pipeline, const PixelStretch& stretch) 
 }
 
 StepGrid SquareSteps::grid_of(int step, const CaptureHeader& header) const {
-    const Window &data = header.data_window, &display = header.display_window;
+    const Window& display = header.display_window;
+    const Window& data = is_in_display_window(step) ? display : header.data_window;
     if (!contains(step)) return {data, display, {}};
     return {stretched(data, display, stretch_), stretched(display, display, stretch_), stretch_};
 }

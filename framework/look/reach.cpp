@@ -34,7 +34,8 @@ double most_of(const PipelineStep& step, const ParamSpec& spec) {
 /// Px as rendered; nullopt: all.
 std::optional<int> reach_of(const PipelineStep& step, double scale) {
     const EffectManifest& manifest = *step.manifest;
-    if (!manifest.reach) return is_pointwise(manifest) ? std::optional(0) : std::nullopt;
+    if (!manifest.reach)
+        return is_pointwise(manifest) && !manifest.counts_from_part ? std::optional(0) : std::nullopt;
     if (manifest.reach->is_all) return std::nullopt;
     int reach = manifest.reach->px;
     for (const std::string& name : manifest.reach->params)

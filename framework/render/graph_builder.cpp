@@ -324,8 +324,7 @@ void GraphBuilder::bind_block(const StepBuild& build, BlockKind kind, graph::Pas
     pass.uniforms.push_back({gl_binding(kind), std::vector<std::byte>(block_bytes(kind, build.manifest()))});
     const auto same = [&](const BlockBinding& block) {
         return block.kind == kind &&
-               (block.step == build.index ||
-                (kind == BlockKind::camera && square_steps_.contains(block.step) == is_square_));
+               (block.step == build.index || (kind == BlockKind::camera && grid_of(block.step) == grid_));
     };
     auto block = std::find_if(blocks_.begin(), blocks_.end(), same);
     if (block == blocks_.end()) block = blocks_.insert(block, BlockBinding{kind, build.index, {}});

@@ -41,12 +41,14 @@ std::unique_ptr<BuiltGraph> build_graph(const GraphTools& tools, const GraphFram
 
 struct StepBuild;
 
-/// The binding of the block in glsl/host/square_pixels.frag.
+/// The binding of the blocks in glsl/host/square_pixels.frag and window.frag.
 inline constexpr int kStretchBinding = 0;
 /// The passes that convert between grids, and their targets, are named after the texture that they read, with
 /// one of these suffixes.
 inline constexpr const char* kToSquarePixels = "@square pixels";
 inline constexpr const char* kToStoredPixels = "@stored pixels";
+inline constexpr const char* kToDisplayWindow = "@display window";
+inline constexpr const char* kToDataWindow = "@data window";
 
 /// Adds the passes of one step after the other to a graph.
 class GraphBuilder {
@@ -60,7 +62,17 @@ private:
     std::vector<std::string> present_inputs(int index);
     graph::TextureHandle import(const std::string& role, int offset = 0);
     graph::TextureHandle resolve(const InputSource& source, int offset = 0);
+    /// What the texels of a step's images are: of square pixels or the capture's, in the display window or
+    /// the data's.
+    struct Grid {
+        bool is_square = false, is_display = false;
+        bool operator==(const Grid&) const = default;
+    };
+    Grid grid_of(int step) const;
+    std::pair<int, int> size_of(const Grid& grid);
     void use_grid_of(int step);
+    graph::TextureHandle converted(graph::TextureHandle handle, const InputSource& source, const Grid& from,
+                                   const Grid& to);
     /// `handle`, which is `source`, on the grid that is in use.
     graph::TextureHandle on_grid(graph::TextureHandle handle, const InputSource& source);
     void declare(StepBuild& build);
@@ -103,7 +115,7 @@ private:
     const Pipeline& pipeline_;
     const GraphFrameReader::SquareGrid square_;
     const SquareSteps square_steps_;
-    bool is_square_ = false;  // the grid in use, of the step that is added
+    Grid grid_;               // in use, of the step that is added
     bool is_single_ = false;  // whether the step runs once a frame
     int width_ = 0;           // of that grid
     int height_ = 0;
@@ -112,9 +124,10 @@ private:
     std::map<std::vector<std::string>, std::function<std::shared_ptr<const gpu::Program>()>>
         wipe_programs_;  // by defines
     std::unique_ptr<BuiltGraph> built_;
-    std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;   // by role and offset
-    std::map<std::tuple<int, int, bool>, graph::TextureHandle> converted_;  // by texture, version, is_single_
-    std::map<int, graph::TextureHandle> masks_;                             // by step
+    std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;  // by role and offset
+    /// By texture, version, is_single_ and the grid that it is on.
+    std::map<std::tuple<int, int, bool, bool, bool>, graph::TextureHandle> converted_;
+    std::map<int, graph::TextureHandle> masks_;  // by step
     std::vector<ParamBinding> params_;
     std::vector<NativeTableBinding> native_tables_;
     std::vector<BlockBinding> blocks_;

@@ -1,7 +1,9 @@
 // The grids that steps work on, from one to the other, and what is kept of them: the third part of
 // GraphBuilder.
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "framework/base/error.h"
 #include "framework/base/option.h"
@@ -12,11 +14,23 @@
 
 namespace aftershade {
 
+GraphBuilder::Grid GraphBuilder::grid_of(int step) const {
+    return {square_steps_.contains(step), square_steps_.is_in_display_window(step)};
+}
+
+std::pair<int, int> GraphBuilder::size_of(const Grid& grid) {
+    if (grid.is_display) {
+        const GraphFrameReader::DisplayWindow window = frame_.display_window(grid.is_square);
+        return {window.width_px, window.height_px};
+    }
+    if (grid.is_square) return {square_.width_px, square_.height_px};
+    return {frame_.width_px(), frame_.height_px()};
+}
+
 void GraphBuilder::use_grid_of(int step) {
     is_single_ = step < 0 || step > pipeline_.last_accumulating_step();
-    is_square_ = square_steps_.contains(step);
-    width_ = is_square_ ? square_.width_px : frame_.width_px();
-    height_ = is_square_ ? square_.height_px : frame_.height_px();
+    grid_ = grid_of(step);
+    std::tie(width_, height_) = size_of(grid_);
 }
 
 namespace {
@@ -32,34 +46,59 @@ std::optional<ChannelRole> role_of(const Pipeline& pipeline, const InputSource& 
 }  // namespace
 
 graph::TextureHandle GraphBuilder::on_grid(graph::TextureHandle handle, const InputSource& source) {
-    const bool was_square = square_steps_.contains(source.step);
-    if (was_square == is_square_) return handle;
-    gpu::TextureDesc desc = graph_.textures()[std::size_t(handle.texture)].desc;
-    const int width = was_square ? square_.width_px : frame_.width_px();
-    const int height = was_square ? square_.height_px : frame_.height_px();
+    Grid from = grid_of(source.step);
+    const gpu::TextureDesc& desc = graph_.textures()[std::size_t(handle.texture)].desc;
     // A texture of another size is not looked up by the pixel.
-    if (desc.width != width || desc.height != height || desc.layers > 1) return handle;
-    const auto [known, is_new] = converted_.try_emplace({handle.texture, handle.version, is_single_});
+    if (std::pair(desc.width, desc.height) != size_of(from) || desc.layers > 1) return handle;
+    const auto go = [&](const Grid& to) {
+        if (from == to) return;
+        handle = converted(handle, source, from, to);
+        from = to;
+    };
+    // Square pixels are counted over the data window.
+    if (from.is_square != grid_.is_square) go({from.is_square, false});
+    go({grid_.is_square, from.is_display});
+    go(grid_);
+    return handle;
+}
+
+/// From one grid to another that differs in its pixels or in its window.
+graph::TextureHandle GraphBuilder::converted(graph::TextureHandle handle, const InputSource& source,
+                                             const Grid& from, const Grid& to) {
+    const auto [width, height] = size_of(to);
+    const GraphFrameReader::DisplayWindow window = from.is_display || to.is_display
+                                                       ? frame_.display_window(to.is_square)
+                                                       : GraphFrameReader::DisplayWindow{};
+    const bool is_window = from.is_display != to.is_display;
+    if (is_window && window.x == 0 && window.y == 0 && size_of(from) == size_of(to)) return handle;
+    const std::tuple key{handle.texture, handle.version, is_single_, to.is_square, to.is_display};
+    const auto [known, is_new] = converted_.try_emplace(key);
     if (!is_new) return known->second;
+    const graph::TextureHandle& made = known->second;
+    const gpu::TextureFormat format = graph_.textures()[std::size_t(handle.texture)].desc.format;
+    std::vector<std::string> defines;
+    if (!is_window) defines.emplace_back(to.is_square ? "TO_SQUARE" : "TO_STORED");
     const auto role = role_of(pipeline_, source);
-    std::vector<std::string> defines = {is_square_ ? "TO_SQUARE" : "TO_STORED"};
-    if (gpu::is_integer(desc.format)) defines.emplace_back("INTEGERS");
-    else if (role && role->kind == RoleKind::motion) defines.emplace_back("MOTION");
-    else if (role && role->filterable) defines.emplace_back("MEAN");
+    if (gpu::is_integer(format)) defines.emplace_back("INTEGERS");
+    else if (!is_window && role && role->kind == RoleKind::motion) defines.emplace_back("MOTION");
+    else if (!is_window && role && role->filterable) defines.emplace_back("MEAN");
     graph::Pass pass;
     pass.name = graph_.textures()[std::size_t(handle.texture)].name +
-                (is_square_ ? kToSquarePixels : kToStoredPixels);
+                (is_window      ? to.is_display ? kToDisplayWindow : kToDataWindow
+                 : to.is_square ? kToSquarePixels
+                                : kToStoredPixels);
+    std::vector<std::int64_t> numbers;
+    if (!is_window) numbers = {square_.stretch.axis, square_.stretch.to, square_.stretch.from, square_.phase};
+    else if (to.is_display) numbers = {window.x, window.y};
+    else numbers = {-window.x, -window.y};
     Std140Writer block;
-    for (const std::int64_t number : {std::int64_t(square_.stretch.axis), square_.stretch.to,
-                                      square_.stretch.from, std::int64_t(square_.phase)})
-        block.add(std::int32_t(number));
+    for (const std::int64_t number : numbers) block.add(std::int32_t(number));
     pass.uniforms.push_back({kStretchBinding, block.finish()});
     pass.reads.push_back({handle, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(handle)});
-    desc = {width_, height_, desc.format};
-    pass.targets.push_back({graph_.create_texture(pass.name, desc)});
-    programs_.give_host(graph_, pass, "square_pixels.frag", defines);
-    return converted_[{handle.texture, handle.version, is_single_}] =
-               graph_.add_pass(std::move(pass)).targets.front();
+    pass.targets.push_back({graph_.create_texture(pass.name, {width, height, format})});
+    programs_.give_host(graph_, pass, is_window ? "window.frag" : "square_pixels.frag", defines);
+    converted_[key] = graph_.add_pass(std::move(pass)).targets.front();
+    return made;
 }
 
 namespace {

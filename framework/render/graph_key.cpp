@@ -29,6 +29,16 @@ std::vector<double> square_pixels_of(const GraphFrame& frame) {
             double(window.width()), double(window.height())};
 }
 
+std::vector<double> display_window_of(const GraphFrame& frame, bool is_square) {
+    const CaptureHeader& header = frame.inputs.capture->header;
+    const PixelStretch stretch =
+        is_square ? SquareSteps(frame.pipeline, header.pixel_aspect).stretch() : PixelStretch{};
+    const Window data = stretched(header.data_window, header.display_window, stretch);
+    const Window display = stretched(header.display_window, header.display_window, stretch);
+    return {double(display.min_x - data.min_x), double(display.min_y - data.min_y), double(display.width()),
+            double(display.height())};
+}
+
 ParamValue answer_to(const GraphQuestion& question, const GraphFrame& frame) {
     const std::string& name = question.name;
     const auto native = [&]() -> const NativeResult& { return *frame.natives.result(question.of); };
@@ -36,6 +46,7 @@ ParamValue answer_to(const GraphQuestion& question, const GraphFrame& frame) {
         case About::width_px: return std::int64_t(frame.inputs.capture->header.data_window.width());
         case About::height_px: return std::int64_t(frame.inputs.capture->header.data_window.height());
         case About::square_pixels: return square_pixels_of(frame);
+        case About::display_window: return display_window_of(frame, question.of == 1);
         case About::image: return frame.inputs.has_image(name, question.of);
         case About::wanted_role:
             return std::find(frame.roles.begin(), frame.roles.end(), name) != frame.roles.end();
@@ -90,6 +101,11 @@ GraphFrameReader::SquareGrid GraphFrameReader::square_pixels() {
             int(values[3]),
             int(values[4]),
             int(values[5])};
+}
+
+GraphFrameReader::DisplayWindow GraphFrameReader::display_window(bool is_square) {
+    const auto& values = std::get<std::vector<double>>(ask({About::display_window, is_square ? 1 : 0, ""}));
+    return {int(values[0]), int(values[1]), int(values[2]), int(values[3])};
 }
 
 bool GraphFrameReader::has_image(const std::string& role, int offset) {

@@ -30,6 +30,8 @@ struct GraphQuestion {
         width_px,
         height_px,
         square_pixels,   ///< of the steps that work on them: axis, to, from, phase, width, height
+        display_window,  ///< `of` the capture, 0, or of square pixels, 1: x and y in the data window, width,
+                         ///< height
         image,           ///< whether the capture `of` frames after has the role `name`
         wanted_role,     ///< whether the role `name` is to be read back
         param,           ///< the `aspect` of the parameter `name` of step `of`
@@ -78,6 +80,12 @@ public:
         int height_px = 0;
     };
     SquareGrid square_pixels();
+    /// Where the display window begins in the data window, and its size, in px of the steps' grid.
+    struct DisplayWindow {
+        int x = 0, y = 0;
+        int width_px = 0, height_px = 0;
+    };
+    DisplayWindow display_window(bool is_square);
     /// `offset`: of which capture, in frames.
     bool has_image(const std::string& role, int offset);
     bool wants(const std::string& role);

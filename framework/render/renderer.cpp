@@ -39,7 +39,8 @@ graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<Audi
         const gpu::TextureDesc& desc = target.desc();
         if (gpu::is_integer(desc.format)) return;
         // What these write has been looked at.
-        if (texture.ends_with(kToSquarePixels) || texture.ends_with(kToStoredPixels)) return;
+        for (const char* grid : {kToSquarePixels, kToStoredPixels, kToDisplayWindow, kToDataWindow})
+            if (texture.ends_with(grid)) return;
         const auto role = role_of_output.find(texture);
         const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
         const std::vector<float> values = target.read_floats();

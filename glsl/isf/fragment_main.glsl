@@ -1,5 +1,4 @@
-#undef main
-void ISF_MAIN() {
+void main() {
     isf_main();
-    ISF_OUT = ISF_RESULT(isf_data[0]);
+    ISF_OUT = ISF_RESULT(ISF_COLOR);
 }

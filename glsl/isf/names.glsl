@@ -3,6 +3,8 @@
 #define IMG_PIXEL(image, at) isf_sample_pixel(image, at)
 #define IMG_NORM_PIXEL(image, at) isf_sample(image, at)
 #define IMG_SIZE(image) isf_size(image)
+#define VVSAMPLER_2DBYPIXEL(image, rect, size, flip, at) isf_sample_pixel(image, at)
+#define VVSAMPLER_2DBYNORM(image, rect, size, flip, at) isf_sample(image, at)
 #define sampler2DRect sampler2D
 #define texture isf_sample
 #define texture2D isf_sample
@@ -12,7 +14,6 @@
 #define textureLod isf_sample_level
 #define texture2DProj isf_sample_part
 #define textureProj isf_sample_part
-#define texelFetch isf_fetch
 #define texture2DProjLod isf_sample_part_level
 #define texture2DRectProj(image, at) isf_sample_pixel(image, (at).xy / (at).z)
 #define texture2DGrad isf_sample_slope
@@ -24,11 +25,3 @@
 #define textureLodOffset isf_sample_level_beside
 #define texelFetchOffset isf_fetch_beside
 #define textureGather isf_gather
-// The host may have renamed main(), to draw around it.
-#ifdef main
-#undef main
-#define ISF_MAIN aftershade_author_main
-#else
-#define ISF_MAIN main
-#endif
-#define main isf_main

@@ -1,5 +1,4 @@
-#undef main
-void ISF_MAIN() {
+void main() {
     isf_vertShaderInit();
     isf_main();
 }

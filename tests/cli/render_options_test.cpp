@@ -108,6 +108,28 @@ TEST_F(RenderOptions, RegionIsThatPartOfTheWholePicture) {
     EXPECT_EQ(png.height(), 20);
 }
 
+/// Without a "reach", effects that read nothing but their pixel count from the part of the frame in these
+/// ways.
+TEST_F(RenderOptions, RegionOfAnEffectThatDrawsByItsPlaceIsThatPartOfTheWholePicture) {
+    for (const std::string place : {"gl_FragCoord.xy", "gl_FragCoord.xy / vec2(frame.size)",
+                                    "(gl_FragCoord.xy + vec2(frame.origin)) / vec2(frame.display_size)"}) {
+        fs::create_directories(folder_ / "effects/ramp");
+        write_text(folder_ / "effects/ramp/effect.json",
+                   R"({ "aftershade": 1, "version": "1.0.0", "summary": "A test.", "id": "ramp",
+            "inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+            "passes": [ { "name": "main", "shader": "main.frag", "reads": [{"color": "pixel"}], "writes": ["color"] } ] })");
+        write_text(folder_ / "effects/ramp/main.frag",
+                   "#version 450 core\n#include <pass>\nvoid main() { out_color = "
+                   "vec4(" +
+                       place + ", color.rg); }\n");
+        write_text(folder_ / "ramp.json", R"({ "aftershade": 1, "steps": [ { "effect": "ramp" } ] })");
+        run({"ramp.json", "in_0002.exr", "-o", "whole.exr"});
+        run({"ramp.json", "in_0002.exr", "--region", "10,8,30,20", "-o", "part.exr"});
+        const Image whole = color("whole.exr"), part = color("part.exr");
+        for (int c = 0; c < 4; ++c) EXPECT_EQ(part.at(4, 3, c), whole.at(14, 11, c)) << place;
+    }
+}
+
 TEST_F(RenderOptions, RegionBeyondThePictureIsCutToItAndSaid) {
     const CommandResult over = run({"nothing.json", "in_0002.exr", "--region=50,-4,40,20", "-o", "part.exr",
                                     "-o", "part.png", "--report", "report.json"});

@@ -22,6 +22,22 @@ void write(const std::filesystem::path& path, const Image& image, const std::vec
     write_exr(path, channels, options);
 }
 
+TEST(Picture, OfAJpegHasItsColours) {
+    const std::filesystem::path file =
+        std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "tests/fuzz/corpus/jpeg/two_halves.jpg";
+    const Image image = read_picture(file, PictureSpace::data);
+    ASSERT_EQ(image.width(), 32);
+    // As Pillow wrote them, at quality 95.
+    const float left[] = {200, 40, 20, 255}, right[] = {20, 60, 180, 255};
+    for (int c = 0; c < 4; ++c) {
+        EXPECT_NEAR(image.at(4, 8, c), left[c] / 255, 3 / 255.0);
+        EXPECT_NEAR(image.at(28, 8, c), right[c] / 255, 3 / 255.0);
+    }
+    const TemporaryFolder folder;
+    test::write_text(folder / "short.jpg", test::read_text(file).substr(0, 500));
+    EXPECT_THROW(read_picture(folder / "short.jpg", PictureSpace::data), Error);
+}
+
 TEST(Picture, OfAnExrHasWhatTheFileHas) {
     const TemporaryFolder folder;
     const Image image = test::pattern_image(5, 3, 4);

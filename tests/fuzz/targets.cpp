@@ -33,6 +33,7 @@
 #include "framework/effect/usage_check.h"
 #include "framework/file/exr_file.h"
 #include "framework/file/hdr_file.h"
+#include "framework/file/jpeg_file.h"
 #include "framework/file/png_file.h"
 #include "framework/image/lut.h"
 #include "framework/image/role.h"
@@ -136,6 +137,11 @@ void capture_file(std::string_view bytes) {
 void png(std::string_view bytes) {
     const fs::path file = file_of("in.png", bytes);
     refused_or_read([&] { read_png(file); });
+}
+
+void jpeg(std::string_view bytes) {
+    const fs::path file = file_of("in.jpg", bytes);
+    refused_or_read([&] { read_jpeg(file); });
 }
 
 void hdr(std::string_view bytes) {
@@ -429,6 +435,7 @@ constexpr Target kTargets[] = {
     {"capture_file", "in.exr", capture_file},
     {"png", "in.png", png},
     {"hdr", "in.hdr", hdr},
+    {"jpeg", "in.jpg", jpeg},
     {"cube", "in.cube", cube},
     {"gltf", "in.glb", gltf},
     {"round_trip", "in.bin", round_trip},

@@ -303,7 +303,8 @@ TEST_F(SchemaAgreement, OfAManifestChangedEverywhere) {
              "has no key '|is not declared 'indirect'|another pass has this name",
              // One value against another, or their units.
              "is (above|below) |'min' of at least|must rise|has a unit, but|cannot be (compared|converted)",
-             "must lie above|must go up|taken already|twice|differ in size|has not the size of|in one "
+             "each value needs one|must lie above|must go up|taken already|twice|differ in size|has not the "
+             "size of|in one "
              "turn|but it has|holds|whole number",
              "words, more than|writes (no image|nothing)|outside the domain|is not a value of '|level",
              "'size': in \"",                      // formulas

@@ -1,9 +1,14 @@
 // One of a few names.
 #include <algorithm>
+#include <cstdint>
+#include <set>
+
+#include <nlohmann/json.hpp>
 
 #include "framework/document/grammar.h"
 #include "framework/document/param_type.h"
 #include "framework/document/schema_pieces.h"
+#include "framework/document/units.h"
 
 namespace aftershade {
 
@@ -23,14 +28,37 @@ void declare(grammar::Block& declaration, const grammar::Block&) {
         "values",
         grammar::list(value, {.min = 2, .unique = true, .fault = "an enum needs at least two 'values'"}),
         "Names of a-z, 0-9 and _."));
+    declaration.keys.push_back(grammar::optional(
+        "numbers", grammar::list(grammar::integer(INT32_MIN, INT32_MAX), {.min = 2}),
+        "Whole numbers that stand for the values, too, one for each. A value whose name is that number goes "
+        "before."));
 }
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
     for (const Node& item : reader.node.find("values")->items) spec.values.push_back(item.string);
+    const Node* numbers = reader.node.find("numbers");
+    if (!numbers) return;
+    for (const Node& item : numbers->items) spec.numbers.push_back(int(item.integer));
+    if (spec.numbers.size() != spec.values.size())
+        reader.diagnostics.error(numbers->place, "'numbers' has " + std::to_string(spec.numbers.size()) +
+                                                     " entries, but 'values' " +
+                                                     std::to_string(spec.values.size()) +
+                                                     "; each value needs one");
+}
+
+/// The value that a whole number stands for; nullptr: none.
+const std::string* value_of_number(const ParamSpec& spec, std::int64_t number) {
+    if (spec.numbers.empty()) return nullptr;
+    const auto named = std::ranges::find(spec.values, std::to_string(number));
+    if (named != spec.values.end()) return &*named;
+    const auto found = std::ranges::find(spec.numbers, number);
+    return found == spec.numbers.end() ? nullptr : &spec.values[std::size_t(found - spec.numbers.begin())];
 }
 
 std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
     const std::vector<std::string>& values = reader.spec.values;
+    if (node.kind == Node::Kind::integer)
+        if (const std::string* value = value_of_number(reader.spec, node.integer)) return *value;
     if (!node.is_string()) return reader.wrong_kind(node, "one of " + list_of_names(values));
     if (std::find(values.begin(), values.end(), node.string) == values.end())
         return reader.fault(node, "'" + node.string + "' is not one of " + list_of_names(values) +
@@ -39,7 +67,13 @@ std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
 }
 
 schema::json literal(const ParamSpec& spec, const schema::LiteralParts&) {
-    return spec.values.empty() ? schema::text() : schema::one_of(spec.values);
+    if (spec.values.empty()) return schema::text();
+    if (spec.numbers.empty()) return schema::one_of(spec.values);
+    std::set<std::int64_t> numbers(spec.numbers.begin(), spec.numbers.end());
+    for (const std::string& value : spec.values)
+        if (const auto number = parse_number(value); number && std::to_string(std::int64_t(*number)) == value)
+            numbers.insert(std::int64_t(*number));
+    return schema::any_of({schema::one_of(spec.values), {{"enum", numbers}}});
 }
 
 std::string type_text(const ParamSpec& spec) {

@@ -53,7 +53,7 @@ schema::json literal(const ParamSpec&, const schema::LiteralParts&) {
 }
 
 std::string type_text(const ParamSpec& spec) {
-    return spec.file_kind == FileKind::lut ? "file: .cube" : "file: EXR or PNG";
+    return spec.file_kind == FileKind::lut ? "file: .cube" : "file: EXR, PNG or JPEG";
 }
 
 std::string default_text(const ParamSpec& spec) {

@@ -172,13 +172,26 @@ private:
                 return fault(list->place, "VALUES and LABELS of '" + input.name + "' are lists");
         if (!values) return;
         for (std::size_t i = 0; i < values->items.size(); ++i) {
-            const Node& item = values->items[i];
-            if (!item.is_number() || std::abs(item.number) > 1e9)
-                return fault(item.place, "VALUES of '" + input.name + "' are whole numbers");
-            const bool has_label = labels && i < labels->items.size() && labels->items[i].is_string();
+            const Node item = as_number(values->items[i]);
+            if (!item.is_number() || std::abs(item.number) > 1e9 || item.number != std::floor(item.number))
+                return fault(
+                    item.place,
+                    "VALUES of '" + input.name + "' are whole numbers" +
+                        (item.is_number() ? ", which " + format_number(item.number) + " is not" : ""));
+            const Node* label = labels && i < labels->items.size() ? &labels->items[i] : nullptr;
             input.values.push_back(int(item.number));
-            input.labels.push_back(has_label ? labels->items[i].string : format_number(item.number));
+            input.labels.push_back(label && label->is_string()   ? label->string
+                                   : label && label->is_number() ? format_number(label->number)
+                                                                 : format_number(item.number));
         }
+    }
+
+    /// Hosts read "0.5" as a number, too.
+    static Node as_number(const Node& node) {
+        const auto number = node.is_string() ? parse_number(std::string(trimmed(node.string))) : std::nullopt;
+        Node value = node;
+        if (number) value.kind = Node::Kind::number, value.number = *number;
+        return value;
     }
 
     static std::size_t components_of(Type type) {
@@ -191,7 +204,7 @@ private:
         if (!node || node->kind == Node::Kind::null || input.type == Type::image || input.type == Type::audio)
             return std::nullopt;
         const std::string label = std::string(key) + " of '" + input.name + "' is ";
-        Node value = *node;
+        Node value = as_number(*node);
         if (input.type == Type::boolean || input.type == Type::event) {
             const auto is_true = truth(*node);
             if (!is_true || node->is_array() || node->is_object()) {
@@ -205,11 +218,15 @@ private:
         const std::size_t size = components_of(input.type);
         if (size == 1) {
             if (node->kind == Node::Kind::boolean) value.number = node->boolean;
-            else if (!node->is_number()) {
+            else if (!value.is_number()) {
                 fault(node->place, label + std::string(kind_name(node->kind)) + ", but a number is needed");
                 return std::nullopt;
             }
             value.kind = Node::Kind::number;
+            if (input.type == Type::choice && value.number != std::trunc(value.number))
+                diagnostics_.warning(node->place,
+                                     label + format_number(value.number) + ", of which a long takes " +
+                                         format_number(std::trunc(value.number)) + " (write a whole number)");
             return value;
         }
         const auto is_number = [](const Node& item) { return item.is_number(); };
@@ -260,9 +277,6 @@ private:
         sides(node, pass);
         const auto same = [&](const IsfPass& other) { return other.target == pass.target; };
         const bool is_known = std::ranges::any_of(file_.passes, same);
-        if (!pass.target.empty() && is_known && pass.is_persistent)
-            fault(node.find("TARGET")->place, "two passes draw the PERSISTENT TARGET '" + pass.target +
-                                                  "', which one pass may; give this one a TARGET of its own");
         if (!pass.target.empty() && !is_known) claim(pass.target, "a TARGET", node.find("TARGET")->place);
         file_.passes.push_back(std::move(pass));
     }

@@ -4,11 +4,12 @@
 #include <utility>
 
 #include "framework/base/text.h"
-#include "framework/effect/glsl_names.h"
 #include "framework/effect/isf/isf_file.h"
 #include "framework/effect/isf/isf_formula.h"
 #include "framework/effect/isf/isf_nodes.h"
 #include "framework/effect/isf/isf_params.h"
+#include "framework/effect/isf/isf_shaders.h"
+#include "framework/effect/isf/isf_text.h"
 #include "framework/effect/manifest/manifest_reader.h"
 #include "framework/image/role.h"
 
@@ -20,17 +21,10 @@ namespace {
 
 using Type = IsfInput::Type;
 
-/// Words of GLSL 4.50 that older files may name things by.
-const std::set<std::string> kNewWords = {"active",    "buffer", "coherent", "common",     "filter",
-                                         "partition", "patch",  "precise",  "readonly",   "resource",
-                                         "restrict",  "sample", "shared",   "subroutine", "writeonly"};
-/// The blocks of the host's interface.
-const std::set<std::string> kBlocks = {"param", "frame", "camera", "lights", "pass", "native"};
-
 class EffectMaker {
 public:
     EffectMaker(const IsfFile& file, std::string id, IsfSpace space)
-        : file_(file), id_(std::move(id)), space_(space), words_(file), names_(file, words_) {
+        : file_(file), id_(std::move(id)), space_(space), words_(file), texts_(file), names_(file, words_) {
         output_ = space == IsfSpace::display ? kDisplayRole : kColorRole;
         nothing_ = names_.make("nothing");
         find_images();
@@ -48,29 +42,27 @@ public:
         if (!file_.credit.empty()) source += ", " + file_.credit;
         add_member(manifest, "sources", list_node(file_.place, {text(source)}));
         passes();  // says which textures there are
-        // RENDERSIZE and places in the picture are those of all of it.
+        // RENDERSIZE and places in the picture are those of all of it, and hosts know no other pixels.
         add_member(manifest, "reach", text("all"));
+        add_member(manifest, "window", text("display"));
         add_member(manifest, "inputs", inputs());
         add_member(manifest, "outputs",
                    object_node(file_.place, {{output_, object({{"role", text(output_)}})}}));
         add_member(manifest, "params", params());
         add_member(manifest, "textures", textures());
         add_member(manifest, "passes", list_node(file_.place, std::move(passes_)));
-        effect_.shaders[id_ + ".frag"] = shader("fragment", file_.path.filename().string());
-        if (has_vertex()) effect_.shaders[id_ + ".vert"] = shader("vertex", file_.vertex_file);
+        const IsfShaders shaders{file_, words_, texts_, names_, images_};
+        author_text(file_.path.filename().string(), file_.written_text, texts_.fragment());
+        effect_.shaders[id_ + ".frag"] = shaders.text("fragment", file_.path.filename().string());
+        if (has_vertex()) {
+            author_text(file_.vertex_file, file_.vertex_text, texts_.vertex());
+            effect_.shaders[id_ + ".vert"] = shaders.text("vertex", file_.vertex_file);
+        }
         return std::move(effect_);
     }
 
 private:
-    /// Something that the shader samples.
-    struct Image {
-        std::string isf_name = {}, name = {};
-        const IsfInput* input = nullptr;  ///< of an image input
-        const IsfPass* target = nullptr;  ///< the first pass that writes it
-        bool is_file = false;             ///< an import or sound
-        bool is_optional = false;
-        std::string role = {};
-    };
+    using Image = IsfImage;
 
     Node text(std::string value) const { return text_node(file_.place, std::move(value)); }
     Node object(std::vector<std::pair<std::string, Node>> members) const {
@@ -93,7 +85,7 @@ private:
             const std::string& name = image.isf_name;
             image.is_optional = is_data(name);
             image.role = image.is_optional ? name : output_;
-            if (words_.all.contains(name)) images_.push_back(std::move(image));
+            if (words_.has_image(name)) images_.push_back(std::move(image));
         }
         for (const IsfImport& import : file_.imports)
             images_.push_back({import.name, names_.of(import.name), nullptr, nullptr, true});
@@ -122,7 +114,7 @@ private:
     Node params() const {
         Node params = object({});
         for (const IsfInput& input : file_.inputs)
-            if (input.type != Type::image && (input.type != Type::audio || words_.all.contains(input.name)))
+            if (input.type != Type::image && (input.type != Type::audio || words_.has_image(input.name)))
                 add_member(params, names_.of(input.name), param_of_input(file_, input));
         for (const IsfImport& import : file_.imports)
             add_member(params, names_.of(import.name), param_of_import(import));
@@ -133,16 +125,8 @@ private:
         for (const Image& image : images_) {
             if (!image.target) continue;
             const IsfPass& pass = *image.target;
-            const bool is_float = std::ranges::any_of(file_.passes, [&](const IsfPass& other) {
-                return other.target == pass.target && other.is_float;
-            });
-            // Hosts have targets of 8 bits, which would cut light.
-            const char* const format = is_float ? "rgba32f" : is_linear() ? "rgba16f" : "rgba8";
-            Node texture = object_node(pass.place, {{"format", text(format)}});
-            if (has_size(pass))
-                add_member(texture, "size",
-                           list_node(pass.place, {text(formula(pass, 0)), text(formula(pass, 1))}));
-            if (keeps(image)) add_member(texture, "history", bool_node(pass.place, true));
+            Node texture = texture_of(pass);
+            if (keeps(pass.target)) add_member(texture, "history", bool_node(pass.place, true));
             add_member(
                 texture, "doc",
                 text("The target " + image.isf_name + (pass.doc.empty() ? "." : ": " + pass.doc + ".")));
@@ -151,21 +135,53 @@ private:
         return std::move(textures_);
     }
 
+    Node texture_of(const IsfPass& pass) const {
+        const bool is_float = std::ranges::any_of(file_.passes, [&](const IsfPass& other) {
+            return other.target == pass.target && other.is_float;
+        });
+        // Hosts have targets of 8 bits, which would cut light.
+        const char* const format = is_float ? "rgba32f" : is_linear() ? "rgba16f" : "rgba8";
+        Node texture = object_node(pass.place, {{"format", text(format)}});
+        if (has_size(pass))
+            add_member(texture, "size",
+                       list_node(pass.place, {text(formula(pass, 0)), text(formula(pass, 1))}));
+        return texture;
+    }
+
+    /// What the pass draws into. Of passes into one persistent target, the last keeps its picture; a texture
+    /// of its own holds what an earlier one leaves to the passes between.
+    std::string texture_name(std::size_t index) {
+        const IsfPass& pass = file_.passes[index];
+        if (pass.target.empty()) return output_;
+        const auto is_same = [&](const IsfPass& other) { return other.target == pass.target; };
+        const bool is_last =
+            std::none_of(file_.passes.begin() + std::ptrdiff_t(index) + 1, file_.passes.end(), is_same);
+        const std::string& name = names_.of(pass.target);
+        if (is_last || !keeps(pass.target)) return name;
+        const std::string between = names_.make(name + "_" + std::to_string(index));
+        Node texture = texture_of(pass);
+        add_member(texture, "doc",
+                   text("The target " + pass.target + " after pass " + std::to_string(index) + "."));
+        textures_.members.push_back({between, pass.place, std::move(texture)});
+        return between;
+    }
+
     static bool is_whole(const IsfPass& pass, int axis) {
         const std::string side(trimmed(pass.side[axis]));
         return side.empty() || side == (axis == 0 ? "$WIDTH" : "$HEIGHT");
     }
     static bool has_size(const IsfPass& pass) { return !is_whole(pass, 0) || !is_whole(pass, 1); }
+    /// The last pass draws the picture, whose size no pass decides.
+    static bool has_own_size(const IsfPass& pass) { return !pass.target.empty() && has_size(pass); }
     std::string formula(const IsfPass& pass, int axis) const {
         if (is_whole(pass, axis)) return axis == 0 ? "width" : "height";
         return native_formula(pass.side[axis], names_.all());
     }
 
     /// What no shader names need not last.
-    bool keeps(const Image& image) const {
-        return words_.all.contains(image.isf_name) &&
-               std::ranges::any_of(file_.passes, [&](const IsfPass& pass) {
-                   return pass.target == image.isf_name && pass.is_persistent;
+    bool keeps(const std::string& target) const {
+        return words_.has_image(target) && std::ranges::any_of(file_.passes, [&](const IsfPass& pass) {
+                   return pass.target == target && pass.is_persistent;
                });
     }
 
@@ -175,14 +191,15 @@ private:
         textures_ = object({});
         for (Image& image : images_)
             if (is_linear() && image.input && !image.is_file && image.role == output_) straighten(image);
-        std::set<std::string> written;
+        std::map<std::string, std::string> written;
         for (std::size_t i = 0; i < file_.passes.size(); ++i) {
             const IsfPass& pass = file_.passes[i];
             const bool is_last = i + 1 == file_.passes.size();
             // Nothing can read what a later pass draws over.
             if (pass.target.empty() && !is_last) continue;
-            passes_.push_back(pass_of(pass, int(i), written));
-            written.insert(pass.target);
+            const std::string texture = texture_name(i);
+            passes_.push_back(pass_of(pass, int(i), texture, written));
+            written[pass.target] = texture;
         }
         if (const IsfPass& last = file_.passes.back(); !last.target.empty()) present(last);
         if (!needs_nothing_) return;
@@ -216,24 +233,31 @@ private:
 
     Node read(const std::string& name, const char* filter) const { return object({{name, text(filter)}}); }
 
-    Node pass_of(const IsfPass& pass, int index, const std::set<std::string>& written) {
+    /// `written`: textures by the targets that earlier passes of the frame have drawn.
+    Node pass_of(const IsfPass& pass, int index, const std::string& target,
+                 const std::map<std::string, std::string>& written) {
         std::vector<Node> reads;
         Node defines = object({{"ISF_PASS", text(std::to_string(index))}});
         bool lacks_any = false;
         for (std::size_t i = 0; i < images_.size(); ++i) {
             const Image& image = images_[i];
             if (image.is_file || image.is_optional) lacks_any = true;
-            if (image.is_file || (image.target && !words_.all.contains(image.isf_name))) continue;
+            if (image.is_file || (image.target && !words_.has_image(image.isf_name))) continue;
             std::string name = image.name;
             if (const auto straight = straight_.find(name); straight != straight_.end())
                 name = straight->second;
-            if (image.target && !written.contains(image.isf_name)) {
-                lacks_any |= !keeps(image);
-                if (!keeps(image)) continue;
+            if (const auto drawn = written.find(image.isf_name); image.target && drawn != written.end())
+                name = drawn->second;
+            else if (image.target) {
+                lacks_any |= !keeps(image.isf_name);
+                if (!keeps(image.isf_name)) continue;
                 name += ".prev";
             }
             const bool is_exact = image.is_optional && !find_role(image.role)->filterable;
-            reads.push_back(is_exact ? text(name) : read(name, "linear"));
+            const bool is_pixel = !has_vertex() && !words_.has_derivative() &&
+                                  texts_.is_read_by_pixel(image.isf_name) && !has_own_size(pass) &&
+                                  (!image.target || !has_size(*image.target));
+            reads.push_back(is_exact && !is_pixel ? text(name) : read(name, is_pixel ? "pixel" : "linear"));
             add_member(defines, "ISF_IMAGE_" + std::to_string(i),
                        text(name.ends_with(".prev") ? image.name + "_prev" : name));
         }
@@ -245,8 +269,7 @@ private:
         const auto is_sized = [&](const IsfPass& other) { return has_size(other); };
         if (!lacks_any && std::ranges::none_of(file_.passes, is_sized))
             add_member(defines, "ISF_ALIKE", text("1"));
-        const std::string target = pass.target.empty() ? output_ : names_.of(pass.target);
-        add_output(defines, target, pass.target.empty(), !pass.target.empty() && has_size(pass));
+        add_output(defines, target, pass.target.empty(), has_own_size(pass));
         if (std::ranges::any_of(file_.passes, &IsfPass::is_persistent))
             add_member(defines, "ISF_HISTORY", text("1"));
         Node node = object_node(pass.place, {{"name", text("pass_" + std::to_string(index))},
@@ -286,63 +309,16 @@ private:
 
     // ---- shaders ----
 
-    /// A name of the file's that would meet a word of GLSL 4.50 or of the host.
-    std::string own_name(const std::string& word) const {
-        return kBlocks.contains(word) || kNewWords.contains(word) ? "isf_own_" + word : word;
-    }
-
-    std::string shader(const std::string& stage, const std::string& file_name) const {
-        std::string text = "#version 450 core\n#include <pass>\n#include <isf/" + stage + ".glsl>\n";
-        for (const IsfInput& input : file_.inputs)
-            text += global_of_input(file_, input, names_.of(input.name), own_name(input.name));
-        text += "#include <isf/" + stage + "_names.glsl>\n";
-        for (std::size_t i = 0; i < images_.size(); ++i) text += image_names(images_[i], i);
-        for (const std::string& word : words_.all)
-            if (own_name(word) != word && !words_.macros.contains(word) && !is_image(word))
-                text += "#define " + word + " " + own_name(word) + "\n";
-        for (const std::string& word : words_.macros) text += "#undef " + word + "\n";
-        for (const std::string& word : symbols()) text += "#undef " + word + "\n";
-        return text + "#include \"" + file_name + "\"\n#include <isf/" + stage + "_main.glsl>\n";
-    }
-
-    bool is_image(const std::string& word) const {
-        return std::ranges::any_of(images_, [&](const Image& image) { return image.isf_name == word; });
-    }
-
-    std::string image_names(const Image& image, std::size_t index) const {
-        const std::string number = "ISF_IMAGE_" + std::to_string(index), &name = image.isf_name;
-        const std::string there =
-            image.is_file       ? "defined(HAS_" + upper_case(image.name) + ")"
-            : image.is_optional ? "defined(" + number + ") && defined(HAS_" + upper_case(image.name) + ")"
-                                : "defined(" + number + ")";
-        std::string text = "#if " + there + "\n#define " + name + " " +
-                           (image.is_file ? image.name : number) + "\n#else\n#define " + name +
-                           " ISF_NOTHING\n#endif\n";
-        // What hosts make of IMG_... some files have themselves.
-        for (const auto& [suffix, meaning] : {std::pair("_imgRect", "vec4(0.0, 0.0, 1.0, 1.0)"),
-                                              {"_imgSize", "isf_size("},
-                                              {"_flip", "false"}})
-            if (const std::string word = "_" + name + suffix; words_.all.contains(word))
-                text += "#define " + word + " " + meaning +
-                        (std::string_view(meaning).ends_with('(') ? name + ")" : "") + "\n";
-        return text;
-    }
-
-    /// Preprocessor symbols of enums that are words of the file.
-    std::vector<std::string> symbols() const {
-        std::vector<std::string> symbols;
-        for (const IsfInput& input : file_.inputs)
-            for (const std::string& label : names_of_labels(input.labels))
-                if (const std::string symbol = upper_case(names_.of(input.name)) + "_" + upper_case(label);
-                    words_.all.contains(symbol))
-                    symbols.push_back(symbol);
-        return symbols;
+    /// A file that needs no other words is read where it lies.
+    void author_text(const std::string& name, const std::string& written, std::string text) {
+        if (text != written) effect_.shaders[name] = std::move(text);
     }
 
     const IsfFile& file_;
     const std::string id_;
     const IsfSpace space_;
     const IsfWords words_;
+    const IsfTexts texts_;
     IsfNames names_;
     std::string output_, nothing_;
     std::vector<Image> images_;

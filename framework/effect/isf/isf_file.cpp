@@ -8,6 +8,7 @@
 #include "framework/base/text.h"
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/isf/isf_document.h"
+#include "framework/effect/isf/isf_text.h"
 #include "framework/effect/shader_source.h"
 
 namespace aftershade {
@@ -36,14 +37,63 @@ std::string as_document(std::string text) {
     return text;
 }
 
-/// What only a vertex shader can fill.
+ShaderSource source_of(const std::string& text, const std::string& path) {
+    ShaderSource source{text, {}};
+    for (int line = 1; line <= 1 + std::ranges::count(text, '\n'); ++line)
+        source.lines.push_back({path, line});
+    return source;
+}
+
+/// What only a vertex shader can fill: "varying vec2 at;", in later GLSL "in vec2 at;".
 std::optional<Place> place_of_varying(const IsfFile& file) {
-    ShaderSource source{file.text, {}};
-    for (int line = 1; line <= 1 + std::ranges::count(file.text, '\n'); ++line)
-        source.lines.push_back({file.path.string(), line});
-    for (const Token& token : glsl_tokens(source))
-        if (token.text == "varying") return token.place();
+    const ShaderSource source = source_of(file.text, file.path.string());
+    const std::vector<Token> tokens = glsl_tokens(source);
+    int depth = 0;
+    for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
+        const std::string_view token = tokens[i].text;
+        if (token == "(" || token == "{") ++depth;
+        if (token == ")" || token == "}") --depth;
+        const bool is_varying = token == "varying" || (token == "in" && depth == 0);
+        if (is_varying && tokens[i + 2].is_word() && !IsfTexts::is_of_isf(tokens[i + 2].text))
+            return tokens[i].place();
+    }
     return std::nullopt;
+}
+
+/// A shader has one function main. A macro or a comment of its name is none. `begin`: of the shader in its
+/// file.
+void check_main(const std::string& file, const Place& begin, Diagnostics& diagnostics) {
+    const ShaderSource source = source_of(file, begin.file);
+    const std::vector<Token> tokens = glsl_tokens(source);
+    const Token* other = nullptr;
+    const auto text = [&](std::size_t i) { return i < tokens.size() ? tokens[i].text : ""; };
+    for (std::size_t i = 1; i < tokens.size(); ++i) {
+        if (tokens[i].text != "main") continue;
+        const bool is_in_macro = std::ranges::any_of(tokens, [&](const Token& token) {
+            return token.line == tokens[i].line && token.text == "define";
+        });
+        if (is_in_macro && text(i - 1) != "define") return;
+        if (is_in_macro)
+            return diagnostics.error(tokens[i].place(),
+                                     "main is a macro here, so that the shader has no main() "
+                                     "(give the macro another name)");
+        if (text(i + 1) != "(" || !tokens[i - 1].may_be_type()) continue;
+        const std::size_t close = i + (text(i + 2) == "void" ? 3 : 2);
+        if (text(i - 1) == "void" && text(close) == ")") return;
+        if (!other) other = &tokens[i];
+    }
+    if (other)
+        diagnostics.error(other->place(),
+                          "main() takes nothing and returns nothing (write it as void main())");
+    else diagnostics.error(begin, "the shader has no main()");
+}
+
+/// The file's name with .vs; "": there is none.
+fs::path vertex_path(fs::path path) {
+    std::error_code failure;
+    for (const char* ending : {".vs", ".VS", ".Vs", ".vS"})
+        if (fs::exists(path.replace_extension(ending), failure)) return path;
+    return {};
 }
 
 }  // namespace
@@ -51,7 +101,8 @@ std::optional<Place> place_of_varying(const IsfFile& file) {
 std::optional<IsfFile> parse_isf(const fs::path& path, std::string text, Diagnostics& diagnostics) {
     IsfFile file;
     file.path = path;
-    file.text = as_document(std::move(text));
+    file.written_text = std::move(text);
+    file.text = as_document(file.written_text);
     const int errors_before = diagnostics.error_count();
     const auto [begin, end] = find_json(file.text);
     const auto line_at = [&](std::size_t at) {
@@ -72,9 +123,7 @@ std::optional<IsfFile> parse_isf(const fs::path& path, std::string text, Diagnos
         if (blanked[i] == '\t' || (i < begin && blanked[i] != '\n')) blanked[i] = ' ';
     if (const auto document = parse_document(blanked, path.string(), diagnostics)) {
         read_isf_document(*document, file, diagnostics);
-        const std::string_view body = std::string_view(file.text).substr(end);
-        if (body.find("main") == std::string_view::npos)
-            diagnostics.error({path.string(), line_at(end), 1}, "the shader has no main()");
+        check_main(file.text, {path.string(), line_at(end), 1}, diagnostics);
     }
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return file;
@@ -100,13 +149,12 @@ std::optional<IsfFile> read_isf(const fs::path& path, Diagnostics& diagnostics) 
     auto text = read(path);
     auto file = text ? parse_isf(path, std::move(*text), diagnostics) : std::nullopt;
     if (!file) return std::nullopt;
-    fs::path vertex = path;
-    vertex.replace_extension(".vs");
-    std::error_code failure;
-    if (!fs::exists(vertex, failure)) {
+    const fs::path vertex = vertex_path(path);
+    if (vertex.empty()) {
         if (const auto varying = place_of_varying(*file)) {
             diagnostics.error(*varying, "the shader has a varying, but there is no vertex shader '" +
-                                            vertex.filename().string() + "' that would set it");
+                                            fs::path(path).replace_extension(".vs").filename().string() +
+                                            "' that would set it");
             return std::nullopt;
         }
         return file;
@@ -115,6 +163,9 @@ std::optional<IsfFile> read_isf(const fs::path& path, Diagnostics& diagnostics) 
     if (!vertex_text) return std::nullopt;
     file->vertex_file = vertex.filename().string();
     file->vertex_text = std::move(*vertex_text);
+    const int errors_before = diagnostics.error_count();
+    check_main(file->vertex_text, {vertex.string(), 1, 1}, diagnostics);
+    if (diagnostics.error_count() > errors_before) return std::nullopt;
     return file;
 }
 

@@ -58,6 +58,7 @@ std::vector<fs::path> import_isf(const fs::path& path, const fs::path& folder, I
         return {};
     std::set<std::string> copies{path.filename().string()};
     if (!file->vertex_file.empty()) copies.insert(file->vertex_file);
+    for (const auto& [name, text] : effect.shaders) copies.erase(name);
     for (const IsfImport& import : file->imports) copies.insert(import.path);
     for (const std::string& name : copies)
         if (const std::string why = out_of_bounds(from / name, from); !why.empty())

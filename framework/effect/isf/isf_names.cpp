@@ -34,6 +34,17 @@ IsfWords::IsfWords(const IsfFile& file) {
     }
 }
 
+bool IsfWords::has_image(const std::string& name) const {
+    return all.contains(name) || std::ranges::any_of(kImageWords, [&](const char* suffix) {
+               return all.contains("_" + name + suffix);
+           });
+}
+
+bool IsfWords::has_derivative() const {
+    return std::ranges::any_of(
+        all, [](const std::string& word) { return word.starts_with("dFd") || word.starts_with("fwidth"); });
+}
+
 IsfNames::IsfNames(const IsfFile& file, const IsfWords& words) : words_(words) {
     for (const std::string_view output : {kDisplayRole, kColorRole})
         for (const std::string& name : relatives(std::string(output))) taken_.insert(name);
@@ -69,8 +80,13 @@ std::vector<std::string> names_of_labels(const std::vector<std::string>& labels)
     std::vector<std::string> names;
     for (const std::string& label : labels) {
         std::string name;
+        const auto is_plain = [](char c) {
+            return std::isalnum(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 128;
+        };
+        // Labels such as -1 and 1 are two names.
+        if (label.size() > 1 && label[0] == '-' && is_plain(label[1])) name = "minus_";
         for (const char c : lower_case(label))
-            if (std::isalnum(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 128) name += c;
+            if (is_plain(c)) name += c;
             else if (!name.empty() && name.back() != '_') name += '_';
         while (name.ends_with('_')) name.pop_back();
         if (name.empty()) name = "value";

@@ -1,6 +1,7 @@
 // Names of ours for what an ISF file names. Internal to framework/effect/isf.
 #pragma once
 
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -10,11 +11,17 @@
 
 namespace aftershade {
 
+/// Hosts have these variables of each image: _inputImage_imgRect and so on.
+inline constexpr std::array<const char*, 3> kImageWords = {"_imgRect", "_imgSize", "_flip"};
+
 /// The identifiers of the file's shaders, without their comments.
 struct IsfWords {
     explicit IsfWords(const IsfFile& file);
     std::set<std::string> all;
     std::set<std::string> macros;  ///< that the file defines
+    /// Whether a shader names the image, or one of kImageWords of it.
+    bool has_image(const std::string& name) const;
+    bool has_derivative() const;
 };
 
 class IsfNames {

@@ -114,6 +114,9 @@ Node param_of_input(const IsfFile& file, const IsfInput& input) {
                 for (const std::string& name : names) values.push_back(text_node(at, name));
                 add_member(param, "type", text("enum"));
                 add_member(param, "values", list_node(at, std::move(values)));
+                std::vector<Node> numbers;
+                for (const int value : input.values) numbers.push_back(number_node(at, value));
+                add_member(param, "numbers", list_node(at, std::move(numbers)));
                 add_member(param, "default", text_node(at, names[index_of(input, input.default_value)]));
                 if (input.identity)
                     add_member(param, "identity", text_node(at, names[index_of(input, input.identity)]));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/base/diagnostics.h"
+#include "framework/base/text.h"
 #include "framework/document/document.h"
 
 namespace aftershade {
@@ -45,8 +46,9 @@ struct IsfImport {
 
 struct IsfFile {
     std::filesystem::path path;
-    std::string text;         ///< of the file, which is the fragment shader
-    std::string vertex_file;  ///< beside it: the same name with .vs; "" for none
+    std::string text;          ///< of the file, which is the fragment shader
+    std::string written_text;  ///< the same, byte for byte
+    std::string vertex_file;   ///< beside it: the same name with .vs; "" for none
     std::string vertex_text;
     std::string summary, credit;
     std::vector<IsfInput> inputs;
@@ -60,7 +62,11 @@ inline constexpr std::size_t kMaxIsfInputs = 256;
 
 /// Whether the path is of such a file, by its ending.
 inline bool is_isf_path(const std::filesystem::path& path) {
-    return path.extension() == ".fs";
+    return lower_case(path.extension().string()) == ".fs";
+}
+/// The same, or of a vertex shader.
+inline bool is_isf_shader(const std::filesystem::path& path) {
+    return is_isf_path(path) || lower_case(path.extension().string()) == ".vs";
 }
 
 }  // namespace aftershade

@@ -346,8 +346,12 @@ struct EffectManifest {
     std::vector<PassSpec> passes;  ///< with those of tile lists
     std::optional<NativeSpec> native;
     bool accumulates_subframes = false;  ///< "accumulates": "subframes": runs for each, emits at the last
+    bool is_in_display_window = false;   ///< "window": "display": works on that window, whatever the data's
     std::optional<WarmupSpec> warmup;
     std::optional<ReachSpec> reach;  ///< nullopt: the passes decide (framework/look/reach.h)
+    /// Some shader takes a place or a size from the part of the frame that is rendered, which it does not
+    /// count from the display window. Known where there is no `reach`.
+    bool counts_from_part = false;
     std::vector<PresetSpec> presets;
     std::vector<TelemetrySpec> telemetry;
     std::filesystem::path folder;

@@ -272,6 +272,11 @@ Block make_effect_block() {
                           "How fast the effect recovers from missing history: [below](#warmup)."),
                  optional("reach", reach_form(),
                           "How far around a pixel its result depends on the inputs: [below](#reach)."),
+                 optional(
+                     "window", choice({"data", "display"}),
+                     "The pixels that the effect works on: all that the capture has, or the display window. "
+                     "Its outputs are 0 outside.",
+                     "\"data\""),
                  optional("modules", grammar::list(module, {.unique = true}),
                           "Modules whose declarations come before the effect's own: [below](#modules)."),
                  required("inputs", section_form("inputs"), "Images that the effect reads."),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "framework/base/data_path.h"
+#include "framework/effect/glsl_tokens.h"
 #include "framework/effect/manifest/manifest_check.h"
 #include "framework/effect/manifest/manifest_expand.h"
 #include "framework/effect/shader_source.h"
@@ -163,6 +164,25 @@ private:
 };
 
 }  // namespace
+
+bool counts_from_part(const EffectManifest& manifest, const fs::path& glsl_folder) {
+    const fs::path shared = glsl_folder.empty() ? data_path() / "glsl" : glsl_folder;
+    ShaderTexts texts;
+    return std::ranges::any_of(manifest.passes, [&](const PassSpec& pass) {
+        Diagnostics told_later;
+        if (pass.kind != PassKind::draw) return false;
+        const ShaderSource text = author_text(manifest, pass, shared, told_later, ShaderFile::main, &texts);
+        const std::vector<Token> tokens = glsl_tokens(text);
+        bool has_place = false, has_origin = false, has_size = false;
+        for (std::size_t i = 0; i < tokens.size(); ++i) {
+            has_place |= tokens[i].text == "gl_FragCoord";
+            const bool is_of_frame = i > 1 && tokens[i - 1].text == "." && tokens[i - 2].text == "frame";
+            has_origin |= is_of_frame && tokens[i].text == "origin";
+            has_size |= is_of_frame && tokens[i].text == "size";
+        }
+        return has_size || (has_place && !has_origin);
+    });
+}
 
 bool infer_uses(EffectManifest& manifest, const fs::path& glsl_folder, Diagnostics& diagnostics) {
     const auto infers = [](const PassSpec& pass) { return pass.infers_reads || pass.infers_writes; };

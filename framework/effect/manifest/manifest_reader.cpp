@@ -28,6 +28,8 @@ void ManifestParser::identity(const Reader& document) {
     manifest_.is_recommended = document.boolean("recommended");
     manifest_.sources = document.texts("sources");
     manifest_.accumulates_subframes = document.has("accumulates");
+    enum class Part { data, display };
+    manifest_.is_in_display_window = document.choice<Part>("window") == Part::display;
     if (const auto warmup = document.object("warmup"))
         manifest_.warmup = {int(warmup->integer("frames")), warmup->number("error")};
 }

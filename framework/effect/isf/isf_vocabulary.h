@@ -1,0 +1,34 @@
+// Words of GLSL's versions and of the host's text, which an ISF file may use as names. Internal to
+// framework/effect/isf.
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace aftershade::isf_words {
+
+using Words = std::set<std::string, std::less<>>;
+
+/// Stands before a name of the file's own where the name cannot stand by itself.
+inline constexpr std::string_view kOwn = "isf_own_";
+
+/// Keywords of GLSL 4.50 that stand before another word where they are meant as such.
+extern const Words kQualifiers;
+/// Functions that glsl/isf/ has macros for.
+extern const Words kSampling;
+/// Variables of ISF, which files written for other hosts declare.
+extern const Words kOfIsf;
+
+/// Types of GLSL 4.50 that 1.20 has not.
+bool is_new_type(std::string_view word);
+/// Of GLSL 4.50, and none that older files know as such: no file has those as names.
+bool is_keyword(std::string_view word);
+/// "switch" and its like, of which another word may follow.
+bool is_statement_word(std::string_view word);
+/// Names of the host's own text, but for those that ISF has.
+bool is_host_name(std::string_view word);
+/// Components that may stand behind a dot.
+bool is_swizzle(std::string_view word);
+
+}  // namespace aftershade::isf_words

@@ -1,0 +1,18 @@
+// JPEG pictures through stb: input only.
+#pragma once
+
+#include <filesystem>
+
+#include "framework/image/image.h"
+
+namespace aftershade {
+
+/// Whether a file begins as a JPEG does. False where it cannot be read.
+bool is_jpeg_file(const std::filesystem::path& path);
+
+/// One or three channels of 8 bits as 0 to 1, rows from the top; orientation and profiles are left out.
+/// Throws Error(ErrorKind::capture) that begins with the path: missing, damaged, cut off (stb itself would
+/// fill the rest with grey).
+Image read_jpeg(const std::filesystem::path& path);
+
+}  // namespace aftershade
