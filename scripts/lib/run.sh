@@ -23,7 +23,7 @@ needs_of() {
         bench_all) echo measure aftershade effect_bench exr_bench ;;
         bench_bandwidth) echo measure aftershade fetch_bench ;;
         bench_compare) echo compare flip_bench ;;
-        bench_dof | bench_sss) echo measure aftershade effect_bench ;;
+        bench_dof | bench_isf | bench_sss) echo measure aftershade effect_bench ;;
         bench_exr) echo measure exr_bench ;;
         bench_graph) echo python3 graph_bench ;;
         bench_python | bench_render) echo python3 aftershade ;;

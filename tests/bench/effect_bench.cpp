@@ -1,5 +1,5 @@
 // Times effects on pictures of known CoC or surface, or on a capture's frame, or counts their texel fetches.
-// scripts/bench dof, sss and roofline say which, as JSON on stdin, and read JSON from stdout; the
+// scripts/bench dof, isf, sss and roofline say which, as JSON on stdin, and read JSON from stdout; the
 // figures are of their making, the measuring is here.
 #include <cstdint>
 #include <cstring>
@@ -91,6 +91,27 @@ Capture make_surface(const json& job, const json& test) {
     return capture;
 }
 
+/// Encoded, opaque: bars over a gradient. The job's "role" is "display".
+Capture make_display(const json& job) {
+    const int width = job.at("size").at(0), height = job.at("size").at(1);
+    Capture capture;
+    CaptureHeader& header = capture.header;
+    header.frame = 1;
+    header.path = "bench";
+    header.profile = "native";
+    header.roles = {"display"};
+    header.data_window = header.display_window = {0, 0, width - 1, height - 1};
+    Image& display = capture.images["display"] = Image(width, height, 4);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            display.at(x, y, 0) = float(x) / float(width);
+            display.at(x, y, 1) = float(y) / float(height);
+            display.at(x, y, 2) = float((x / 40 + y / 30) % 2);
+            display.at(x, y, 3) = 1;
+        }
+    return capture;
+}
+
 Capture read_capture(const json& job) {
     Sequence sequence;
     sequence.files = FramePattern(job.at("capture").get<std::string>());
@@ -135,6 +156,7 @@ json measure(gpu::Context& context, gpu::Buffer& counts, const json& job, const 
     const std::string role = test.value("role", job.value("role", "color"));
     const Capture capture = read                   ? *read
                             : role == "irradiance" ? make_surface(job, test)
+                            : role == "display"    ? make_display(job)
                                                    : make_capture(job, test);
     PipelineRenderer renderer(context, pipeline, job.at("data").get<std::string>());
     FrameInputs frame;
