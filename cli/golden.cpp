@@ -10,8 +10,8 @@
 
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
-#include "cli/golden_comment.h"
-#include "cli/golden_init.h"
+#include "cli/golden_comment_verb.h"
+#include "cli/golden_init_verb.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"

@@ -127,7 +127,7 @@ private:
         if (number == 1 && is_foreign(file.text()) && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
         // Files of other hosts may name the versions that they are for, and extensions that 4.50 has.
         std::string_view rest = line;
-        if (is_foreign(file.text()) && (is_version_directive(line) || take_directive(rest, "extension")))
+        if ((is_version_directive(line) || take_directive(rest, "extension")) && is_foreign(file.text()))
             return add_line("", file, number);
         if (is_version_directive(line)) {
             if (source_.lines.empty() && line == "#version 450 core") has_version_ = true;

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/effect/manifest/manifest_expand.h"
 #include "framework/image/role.h"
-#include "framework/look/reach.h"
 
 namespace aftershade {
 

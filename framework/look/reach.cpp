@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/capture/capture_window.h"
+#include "framework/effect/manifest/manifest_expand.h"
 
 namespace aftershade {
 namespace {
@@ -105,13 +106,6 @@ bool needs_all(const PipelineStep& step) {
 }
 
 }  // namespace
-
-bool is_pointwise(const EffectManifest& manifest) {
-    return std::ranges::all_of(manifest.passes, [](const PassSpec& pass) {
-        return pass.kind == PassKind::draw && !pass.has_vertex_shader() && pass.images.empty() &&
-               pass.buffers.empty() && std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
-    });
-}
 
 std::optional<RegionNeeds> needs_of_region(const Pipeline& pipeline, double scale) {
     RegionNeeds needs;

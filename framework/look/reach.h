@@ -25,9 +25,6 @@ std::optional<RegionNeeds> needs_of_region(const Pipeline& pipeline, double scal
 /// The same where steps work on square pixels: a stored pixel is at least as large as one of these.
 std::optional<RegionNeeds> in_stored_pixels(const RegionNeeds& needs, const PixelStretch& stretch);
 
-/// Whether each of its passes reads only its own pixel.
-bool is_pointwise(const EffectManifest& manifest);
-
 /// `region` with what it needs, inside `data`, which is the window of the whole frame; both as rendered.
 Window window_with_needs(const Window& region, const RegionNeeds& needs, const Window& data);
 

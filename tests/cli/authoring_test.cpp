@@ -306,7 +306,8 @@ TEST_F(Authoring, DocsAreWrittenOnceAndTheirDriftIsFound) {
 TEST_F(Authoring, DocsWritesTablesIntoMarkedRegionsOfPagesAndFindsTheirDrift) {
     const std::string begin = "# Mine\n<!-- made by aftershade docs: case.tolerance -->\n";
     const std::string end =
-        "<!-- end -->\nMy own words.\n<!-- made by aftershade docs: case.case -->\n<!-- end -->\n";
+        "<!-- end -->\nMy own words.\n<!-- made by aftershade docs: case.case -->\n<!-- end -->\n"
+        "<!-- made by aftershade docs: case.quarantine -->\n<!-- end -->\n";
     write_text(folder_ / "mine.md", begin + end);
     EXPECT_NE(command({"docs", "-o", "pages"}).out.find("mine.md"), std::string::npos);
     const std::string page = read_text(folder_ / "mine.md");

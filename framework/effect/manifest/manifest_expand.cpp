@@ -133,7 +133,8 @@ bool write_out(EffectManifest& manifest, const std::filesystem::path& glsl_folde
     TileListWriter(manifest, diagnostics).write();
     if (!infer_uses(manifest, glsl_folder, diagnostics)) return false;
     hand_down_conditions(manifest);
-    if (!manifest.reach) manifest.counts_from_part = counts_from_part(manifest, glsl_folder);
+    if (!manifest.reach && is_pointwise(manifest))
+        manifest.counts_from_part = counts_from_part(manifest, glsl_folder);
     return true;
 }
 

@@ -18,6 +18,8 @@ bool write_out(EffectManifest& manifest, const std::filesystem::path& glsl_folde
 /// the manifest's inputs and after them its textures, all of the writes in that of its outputs and textures.
 bool infer_uses(EffectManifest& manifest, const std::filesystem::path& glsl_folder, Diagnostics& diagnostics);
 
+/// Whether each of its passes reads only its own pixel.
+bool is_pointwise(const EffectManifest& manifest);
 /// EffectManifest::counts_from_part.
 bool counts_from_part(const EffectManifest& manifest, const std::filesystem::path& glsl_folder);
 

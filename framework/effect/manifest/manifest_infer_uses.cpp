@@ -165,6 +165,13 @@ private:
 
 }  // namespace
 
+bool is_pointwise(const EffectManifest& manifest) {
+    return std::ranges::all_of(manifest.passes, [](const PassSpec& pass) {
+        return pass.kind == PassKind::draw && !pass.has_vertex_shader() && pass.images.empty() &&
+               pass.buffers.empty() && std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
+    });
+}
+
 bool counts_from_part(const EffectManifest& manifest, const fs::path& glsl_folder) {
     const fs::path shared = glsl_folder.empty() ? data_path() / "glsl" : glsl_folder;
     ShaderTexts texts;

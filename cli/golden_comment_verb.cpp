@@ -1,4 +1,4 @@
-#include "cli/golden_comment.h"
+#include "cli/golden_comment_verb.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>

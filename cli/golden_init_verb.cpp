@@ -1,4 +1,4 @@
-#include "cli/golden_init.h"
+#include "cli/golden_init_verb.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
