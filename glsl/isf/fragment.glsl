@@ -8,17 +8,11 @@ vec2 isf_FragNormCoord = isf_FragCoord.xy / ISF_SIZE;
 vec4 isf_color(vec4 color) { return color; }
 vec4 isf_color(vec3 color) { return vec4(color, 1.0); }
 
-// An image that the file reads by its pixel alone is a value.
+// What the file reads by its pixel is a value where that can be.
 vec4 IMG_THIS_PIXEL(vec4 texel) { return texel; }
 vec4 IMG_THIS_NORM_PIXEL(vec4 texel) { return texel; }
-vec4 IMG_THIS_PIXEL(sampler2D image) {
-#ifdef ISF_ALIKE
-    // All images have the target's size, so that the pixel lies on a texel and needs no filter.
-    return texelFetch(image, ivec2(gl_FragCoord.xy), 0);
-#else
-    return isf_sample(image, isf_FragNormCoord);
-#endif
-}
+vec4 IMG_THIS_PIXEL(sampler2D image) { return isf_sample(image, isf_FragNormCoord); }
+ivec2 isf_pixel = ivec2(gl_FragCoord.xy);
 vec4 IMG_THIS_NORM_PIXEL(sampler2D image) { return IMG_THIS_PIXEL(image); }
 
 // A target of 8 bits cuts by itself; the picture holds floats. clamp() to 0 and 1 is a saturation, which makes 0 of what is not a

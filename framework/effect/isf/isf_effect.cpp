@@ -85,6 +85,7 @@ private:
             const std::string& name = image.isf_name;
             image.is_optional = is_data(name);
             image.role = image.is_optional ? name : output_;
+            image.has_one_name = !is_linear();
             if (words_.has_image(name)) images_.push_back(std::move(image));
         }
         for (const IsfImport& import : file_.imports)
@@ -173,6 +174,11 @@ private:
     static bool has_size(const IsfPass& pass) { return !is_whole(pass, 0) || !is_whole(pass, 1); }
     /// The last pass draws the picture, whose size no pass decides.
     static bool has_own_size(const IsfPass& pass) { return !pass.target.empty() && has_size(pass); }
+    /// Whether the image has the size of what the pass draws into, so that its pixel lies on a texel.
+    static bool is_alike(const IsfPass& pass, const Image& image) {
+        if (!image.target || !has_size(*image.target)) return !has_own_size(pass);
+        return has_own_size(pass) && std::ranges::equal(pass.side, image.target->side);
+    }
     std::string formula(const IsfPass& pass, int axis) const {
         if (is_whole(pass, axis)) return axis == 0 ? "width" : "height";
         return native_formula(pass.side[axis], names_.all());
@@ -254,21 +260,19 @@ private:
                 name += ".prev";
             }
             const bool is_exact = image.is_optional && !find_role(image.role)->filterable;
-            const bool is_pixel = !has_vertex() && !words_.has_derivative() &&
-                                  texts_.is_read_by_pixel(image.isf_name) && !has_own_size(pass) &&
-                                  (!image.target || !has_size(*image.target));
+            const bool is_pixel = is_alike(pass, image) && !has_own_size(pass) && !has_vertex() &&
+                                  !words_.has_derivative() && texts_.is_read_by_pixel(image.isf_name);
             reads.push_back(is_exact && !is_pixel ? text(name) : read(name, is_pixel ? "pixel" : "linear"));
-            add_member(defines, "ISF_IMAGE_" + std::to_string(i),
-                       text(name.ends_with(".prev") ? image.name + "_prev" : name));
+            const std::string sampler = name.ends_with(".prev") ? image.name + "_prev" : name;
+            add_member(defines, "ISF_IMAGE_" + std::to_string(i), text(sampler));
+            if (!texts_.name_here(image.isf_name).empty() && is_alike(pass, image))
+                add_member(defines, "ISF_HERE_" + std::to_string(i), text("1"));
         }
         if (lacks_any) {
             needs_nothing_ = true;
             reads.push_back(text(nothing_));
             add_member(defines, "ISF_NOTHING", text(nothing_));
         }
-        const auto is_sized = [&](const IsfPass& other) { return has_size(other); };
-        if (!lacks_any && std::ranges::none_of(file_.passes, is_sized))
-            add_member(defines, "ISF_ALIKE", text("1"));
         add_output(defines, target, pass.target.empty(), has_own_size(pass));
         if (std::ranges::any_of(file_.passes, &IsfPass::is_persistent))
             add_member(defines, "ISF_HISTORY", text("1"));

@@ -12,7 +12,10 @@ std::string IsfShaders::text(const std::string& stage, const std::string& file_n
     for (const IsfInput& input : file.inputs)
         shader += global_of_input(file, input, names.of(input.name), texts.name(input.name));
     shader += "#include <isf/" + stage + "_names.glsl>\n";
-    for (std::size_t i = 0; i < images.size(); ++i) shader += image_names(images[i], i);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        shader += image_names(images[i], i);
+        if (stage == "fragment") shader += texel(images[i], i);
+    }
     if (const std::string output = texts.output(); stage == "fragment")
         shader +=
             "#define ISF_COLOR " + (output.empty() ? "isf_data[0]" : "isf_color(" + output + ")") + "\n";
@@ -43,6 +46,17 @@ std::string IsfShaders::image_names(const IsfImage& image, std::size_t index) co
             shader += "#define " + word + " " + meaning +
                       (std::string_view(meaning).ends_with('(') ? name + ")" : "") + "\n";
     return shader;
+}
+
+/// Of an image with the target's size, whose pixel lies on a texel and needs no filter. By the sampler's own
+/// name, the host can make a load from an image of the fetch.
+std::string IsfShaders::texel(const IsfImage& image, std::size_t index) const {
+    const std::string here = texts.name_here(image.isf_name), number = std::to_string(index);
+    if (here.empty()) return "";
+    const std::string sampler = image.has_one_name ? image.name : "ISF_IMAGE_" + number;
+    return "#ifdef ISF_HERE_" + number + "\nvec4 isf_texel_" + number + " = texelFetch(" + sampler +
+           ", isf_pixel, 0);\n#define " + here + " isf_texel_" + number + "\n#else\n#define " + here + " " +
+           texts.name(image.isf_name) + "\n#endif\n";
 }
 
 /// Preprocessor symbols of enums that are words of the file.

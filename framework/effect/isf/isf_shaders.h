@@ -16,6 +16,7 @@ struct IsfImage {
     const IsfPass* target = nullptr;  ///< the first pass that writes it
     bool is_file = false;             ///< an import or sound
     bool is_optional = false;
+    bool has_one_name = false;  ///< its sampler is `name` in each pass
     std::string role = {};
 };
 
@@ -31,6 +32,7 @@ struct IsfShaders {
     std::string text(const std::string& stage, const std::string& file_name) const;
 
 private:
+    std::string texel(const IsfImage& image, std::size_t index) const;
     std::string image_names(const IsfImage& image, std::size_t index) const;
     std::vector<std::string> symbols() const;
 };

@@ -45,17 +45,17 @@ public:
     }
     const std::string& output() const { return output_; }
     bool is_read_by_pixel(const std::string& name) const {
-        for (std::size_t i = 0; i < tokens_.size(); ++i) {
-            const bool is_here = before(i) == "(" && at(i + 1) == ")" &&
-                                 (at(i - 2) == "IMG_THIS_PIXEL" || at(i - 2) == "IMG_THIS_NORM_PIXEL");
-            if (is_of(tokens_[i].text, name) && !(i > 1 && tokens_[i].text == name && is_here)) return false;
-        }
+        for (std::size_t i = 0; i < tokens_.size(); ++i)
+            if (is_of(tokens_[i].text, name) && !(tokens_[i].text == name && is_read_here(i))) return false;
         return true;
     }
 
     std::string text() {
         for (std::size_t i = 0; i < tokens_.size(); ++i)
             if (tokens_[i].text == "main") edits_.push_back({offset(i), 0, "isf_"});  // for ours around it
+            else if (is_fragment_ && file_.read_here_.contains(std::string(tokens_[i].text)) &&
+                     is_read_here(i))
+                edits_.push_back({offset(i), 0, std::string(kHere)});
             else if (tokens_[i].is_word() && is_renamed(i))
                 edits_.push_back({offset(i), 0, std::string(kOwn)});
         std::ranges::sort(edits_, {}, &Edit::at);
@@ -70,6 +70,12 @@ public:
     }
 
 private:
+    /// IMG_THIS_PIXEL(name)
+    bool is_read_here(std::size_t i) const {
+        return i > 1 && before(i) == "(" && at(i + 1) == ")" &&
+               (tokens_[i - 2].text == "IMG_THIS_PIXEL" || tokens_[i - 2].text == "IMG_THIS_NORM_PIXEL");
+    }
+
     struct Edit {
         std::size_t at = 0, size = 0;
         std::string text;
@@ -260,6 +266,12 @@ IsfTexts::IsfTexts(const IsfFile& file) : file_(file), macros_(IsfWords(file).ma
                 rewriter.has_another_meaning(name))
                 own_things_.insert(name);
     }
+    const auto add_here = [&](const std::string& name) {
+        if (!name.empty() && !redefines_pixels() && !is_read_by_pixel(name)) read_here_.insert(name);
+    };
+    for (const IsfInput& input : file.inputs)
+        if (input.type == IsfInput::Type::image) add_here(input.name);
+    for (const IsfPass& pass : file.passes) add_here(pass.target);
 }
 
 bool IsfTexts::is_renamed(const std::string& word) const {
@@ -279,8 +291,15 @@ std::string IsfTexts::name(const std::string& isf_name) const {
 }
 
 bool IsfTexts::is_read_by_pixel(const std::string& isf_name) const {
-    return !macros_.contains("IMG_THIS_PIXEL") && !macros_.contains("IMG_THIS_NORM_PIXEL") &&
-           IsfRewriter(*this, file_.text, true).is_read_by_pixel(isf_name);
+    return !redefines_pixels() && IsfRewriter(*this, file_.text, true).is_read_by_pixel(isf_name);
+}
+
+std::string IsfTexts::name_here(const std::string& isf_name) const {
+    return read_here_.contains(isf_name) ? std::string(kHere) + isf_name : "";
+}
+
+bool IsfTexts::redefines_pixels() const {
+    return macros_.contains("IMG_THIS_PIXEL") || macros_.contains("IMG_THIS_NORM_PIXEL");
 }
 
 std::string IsfTexts::output() const {
@@ -307,7 +326,8 @@ std::string with_isf_names(const std::string& message) {
             text += message[i++];
             continue;
         }
-        if (word.starts_with(kOwn)) word.remove_prefix(kOwn.size());
+        for (const std::string_view prefix : {kOwn, kHere})
+            if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
         const auto known = kNames.find(word);
         text += known == kNames.end() ? word : std::string_view(known->second);
         i = end;

@@ -21,6 +21,8 @@ public:
     std::string vertex() const { return rewritten(file_.vertex_text, false); }
     /// An input, a target or an import as the shaders have it.
     std::string name(const std::string& isf_name) const;
+    /// What stands for the image in IMG_THIS_PIXEL(); "": its name.
+    std::string name_here(const std::string& isf_name) const;
     /// Whether IMG_THIS_PIXEL() and its like are all that the fragment shader does with the image.
     bool is_read_by_pixel(const std::string& isf_name) const;
     /// The fragment shader's own output as an expression; "": it writes gl_FragColor.
@@ -33,11 +35,13 @@ public:
 
 private:
     friend class IsfRewriter;
+    bool redefines_pixels() const;
     std::string rewritten(const std::string& text, bool is_fragment) const;
 
     const IsfFile& file_;
     std::set<std::string> things_;  // inputs, targets and imports
     std::set<std::string> own_things_;
+    std::set<std::string> read_here_;  // images by IMG_THIS_PIXEL(), among other ways
     std::set<std::string> macros_;
 };
 

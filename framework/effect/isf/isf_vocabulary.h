@@ -12,6 +12,8 @@ using Words = std::set<std::string, std::less<>>;
 
 /// Stands before a name of the file's own where the name cannot stand by itself.
 inline constexpr std::string_view kOwn = "isf_own_";
+/// Stands before an image's name in IMG_THIS_PIXEL(), where the pixel need not be sampled.
+inline constexpr std::string_view kHere = "isf_here_";
 
 /// Keywords of GLSL 4.50 that stand before another word where they are meant as such.
 extern const Words kQualifiers;
