@@ -158,19 +158,22 @@ std::optional<Json> measured_tolerance(const InitOptions& options, const std::st
     return std::nullopt;
 }
 
-/// Takes the suite away again where no golden came of it.
+/// Takes the suite, and the folder that was made for it, away again where no golden came of it.
 class Unfinished {
 public:
-    explicit Unfinished(fs::path file) : file_(std::move(file)) {}
+    explicit Unfinished(fs::path file)
+        : file_(std::move(file)), made_folder_(fs::create_directories(file_.parent_path())) {}
     ~Unfinished() {
-        std::error_code absent;
-        if (!done_) fs::remove(file_, absent);
+        std::error_code in_use;
+        if (done_) return;
+        fs::remove(file_, in_use);
+        if (made_folder_) fs::remove(file_.parent_path(), in_use);
     }
     void finish() { done_ = true; }
 
 private:
     fs::path file_;
-    bool done_ = false;
+    bool made_folder_ = false, done_ = false;
 };
 
 ExitCode init(InitOptions options) {
@@ -179,7 +182,6 @@ ExitCode init(InitOptions options) {
         throw CodedError(
             kCompareUsage,
             file.string() + ": is there already; add a case to it, or choose another folder with -o");
-    fs::create_directories(options.folder);
     options.golden.suite = options.folder;
     Unfinished unfinished(file);
     write_suite(options, candidates().front());

@@ -62,7 +62,7 @@ TEST_F(GoldenInit, LeavesNothingOfALookThatDoesNotDraw) {
     const CommandResult result = init({"-o", "new"});
     EXPECT_EQ(result.exit_code, 2) << result.out;
     EXPECT_NE(result.err.find("did you mean 'f_number'"), result.err.npos) << result.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "new/golden.json"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
 }
 
 }  // namespace

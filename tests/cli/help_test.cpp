@@ -76,8 +76,9 @@ TEST(UnknownCommand, IsNamedWithTheOneThatWasMeant) {
     const CommandResult golden = aftershade({"golden", "aprove", "suite"});
     EXPECT_EQ(golden.exit_code, 64);
     EXPECT_EQ(golden.err, "aftershade: error: 'aprove' is not a command; did you mean 'approve'?\n");
-    EXPECT_EQ(aftershade({"golden", "xyzzyx"}).err,
-              "aftershade: error: 'xyzzyx' is not a command; choose from run, approve and report\n");
+    EXPECT_EQ(
+        aftershade({"golden", "xyzzyx"}).err,
+        "aftershade: error: 'xyzzyx' is not a command; choose from run, approve, report, comment and init\n");
 }
 
 }  // namespace
