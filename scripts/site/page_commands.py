@@ -26,7 +26,7 @@ echo '{ "aftershade": 1, "steps": [ { "effect": "bokeh" } ] }' >look.json
 """,
     "docs/golden.md": SCENE + VIEW + """aftershade render scene.json -o shot --frames 1 --quiet && mkdir SUITE
 echo '{ "aftershade": 1, "cases": [ { "name": "lens", "look": "../look.json", "capture": "../shot", "outputs": ["display"] } ] }' >SUITE/golden.json
-aftershade golden approve SUITE
+aftershade golden approve SUITE && ln -s look.json LOOK && ln -s shot CAPTURE
 """,
     "docs/looks.md": VIEW + """sed -i 's/{ "effect"/{ "effect": "taa" }, { "effect"/' look.json
 echo '{ "aftershade": 1, "frames": "1-200", "size": [16, 9], "camera": { "position": [0, 0, 4] }, "ambient": 1, "objects": [
@@ -45,6 +45,9 @@ BEFORE = {
     ("docs/batch.md", "aftershade run look.json wheel -o film.mp4"):
         "command -v ffmpeg >/dev/null || { printf '#!/bin/sh\\nfor file; do :; done\\ncat >\"${file#file:}\"\\n' >\"$HOME/bin/ffmpeg\"\n"
         '    chmod +x "$HOME/bin/ffmpeg"; }\n',
+    ("docs/golden.md", "aftershade golden comment report"):
+        "export URL=https://ci.example PULL_REQUEST=7\n"
+        "printf '#!/bin/sh\\ngrep -q \"aftershade golden\" comment.md\\n' >\"$HOME/bin/gh\" && chmod +x \"$HOME/bin/gh\"\n",
     ("docs/batch.md", "aftershade run look.json wheel -o - "): "rm -f film.mp4\n",
     ("docs/isf.md", "aftershade import isf"):
         "mkdir -p filters\n"
