@@ -1,9 +1,7 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
-#include <ctime>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -209,14 +207,11 @@ ExitCode approve(const GoldenOptions& options) {
     if (!options.any_renderer)
         if (const std::string why = foreign_goldens(setup.suite, setup.context.options); !why.empty())
             throw CodedError(kCompareUsage, why);
-    GoldenApproveOptions approve_options;
-    approve_options.run = setup.context.options;
+    GoldenApproveOptions approve_options = approve_options_of(
+        setup, options,
+        printed_command({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options);
     approve_options.add = options.add;
     approve_options.renew_sidecars = options.renew_sidecars;
-    approve_options.command =
-        printed_command({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options;
-    approve_options.approver = approver_of(options, setup.suite.folder());
-    approve_options.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
     const GoldenApproval approval = approve_goldens(
         setup.suite, approve_options,
         [](const GoldenCaseResult& test, int done, int all) {

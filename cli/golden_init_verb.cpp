@@ -1,11 +1,9 @@
 #include "cli/golden_init_verb.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cctype>
-#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -112,13 +110,10 @@ std::vector<Trial> trials_of(const InitOptions& options, const std::string& own)
 }
 
 GoldenApproval approve_first(const InitOptions& options, const GoldenSetup& setup) {
-    GoldenApproveOptions approve;
-    approve.run = setup.context.options;
-    approve.command = printed_command(
+    const std::string command = printed_command(
         {"aftershade", "golden", "init", options.look, options.capture, "-o", options.folder});
-    approve.approver = approver_of(options.golden, options.folder);
-    approve.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
-    return approve_goldens(setup.suite, approve, {}, watch_for_interrupt());
+    return approve_goldens(setup.suite, approve_options_of(setup, options.golden, command), {},
+                           watch_for_interrupt());
 }
 
 std::string words_of(const Json& tolerance) {

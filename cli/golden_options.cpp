@@ -1,12 +1,15 @@
 #include "cli/golden_options.h"
 
+#include <fmt/chrono.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "cli/compare_options.h"
 #include "cli/effect_options.h"
@@ -134,6 +137,16 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
     setup.context.with_options = same.empty() ? "" : " " + printed_command(same);
     setup.context.commit = line_of_git(setup.suite.folder(), {"rev-parse", "HEAD"});
     return setup;
+}
+
+GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOptions& options,
+                                        std::string command) {
+    GoldenApproveOptions approve;
+    approve.run = setup.context.options;
+    approve.command = std::move(command);
+    approve.approver = approver_of(options, setup.suite.folder());
+    approve.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
+    return approve;
 }
 
 std::string approver_of(const GoldenOptions& options, const fs::path& folder) {

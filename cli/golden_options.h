@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/gl_options.h"
+#include "framework/batch/golden_approve.h"
 #include "framework/batch/golden_report.h"
 
 namespace CLI {
@@ -44,6 +45,10 @@ struct GoldenSetup {
     GoldenReportContext context;
 };
 GoldenSetup prepare_golden(const GoldenOptions& options);
+
+/// What approves the images of a suite now, by that command.
+GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOptions& options,
+                                        std::string command);
 
 /// --approver, else git's user.name in the folder, else $USER; "" where none of them is set.
 std::string approver_of(const GoldenOptions& options, const std::filesystem::path& folder);

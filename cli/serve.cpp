@@ -166,7 +166,8 @@ serve::LookModel::File kind_of_file(const std::string& look) {
     return File::fresh;
 }
 
-/// Of another capture than the command's: without the frames and files that the command names for its own.
+/// The sequence of a capture. The frames and files that the command names apply only to the command's own
+/// capture.
 Sequence open_sequence(CaptureOptions options, const std::string& capture,
                        const std::vector<Profile>& profiles) {
     if (capture != options.capture) {

@@ -84,7 +84,7 @@ std::string worst_of(const Json& image) {
     return text;
 }
 
-/// Of the pixels that exceed a limit, of the layer that has most of them.
+/// The percentage of pixels that exceed a limit, in the layer with the largest one.
 std::string share_of(const Json& image) {
     const Json& comparison = image.at("comparison");
     double most = 0;

@@ -8,8 +8,8 @@
 
 namespace aftershade::gpu {
 
-/// Of each pixel `channels` values, at most as many as the texture has; the others are zero. Floats go into
-/// floats, integers into integers.
+/// `values` has `channels` values for each pixel, at most as many as the texture has; the other channels
+/// become zero. Floats go into floats, integers into integers.
 void upload_texels(const TexelPlace& place, std::span<const float> values, int channels);
 void upload_texels(const TexelPlace& place, std::span<const std::uint32_t> values, int channels);
 

@@ -129,8 +129,8 @@ std::shared_ptr<MappedBuffer> Transfers::make(std::size_t wanted, bool for_readi
     return buffer;
 }
 
-/// Of what GL has done with, a buffer that is large enough, else a new one, else the one that GL is done with
-/// first.
+/// Takes a large enough buffer that GL no longer uses, else a new one. If there is no room for one, waits for
+/// the buffer that GL finishes first.
 void Transfers::next_to_write(std::size_t bytes) {
     if (filling_) waiting_.push_back({std::exchange(filling_, nullptr), Fence(gl_)});
     const std::size_t enough = std::min(bytes, kMostBuffer);

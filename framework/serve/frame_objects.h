@@ -16,7 +16,8 @@ namespace aftershade::serve {
 
 class FrameObjects {
 public:
-    /// Of the file of a sequence that was read whole: of its Cryptomattes, else of its role object_id.
+    /// Lists the objects of one file of a sequence, whose capture was read whole: by its Cryptomattes, else
+    /// by its role object_id.
     FrameObjects(const CaptureReader& reader, const Sequence& sequence, int file, const Capture& whole);
 
     /// [{"kind", "name", "id", "share"}] of all pixels, the largest first. Without "name" where there is only

@@ -102,7 +102,7 @@ Response PageServer::change(const Request& request) {
     return state();
 }
 
-/// Of which frame of which capture.
+/// The frame and the capture that a request asks for.
 DrawRequest PageServer::place_of(const Request& request, DrawRequest::Kind kind) const {
     DrawRequest wanted;
     wanted.kind = kind;

@@ -149,8 +149,9 @@ private:
         return texture;
     }
 
-    /// What the pass draws into. Of passes into one persistent target, the last keeps its picture; a texture
-    /// of its own holds what an earlier one leaves to the passes between.
+    /// The texture that the pass draws into. If several passes draw into one persistent target, only the last
+    /// one's picture lasts; an earlier one draws into a texture of its own, which the passes between them
+    /// read.
     std::string texture_name(std::size_t index) {
         const IsfPass& pass = file_.passes[index];
         if (pass.target.empty()) return output_;

@@ -48,8 +48,8 @@ std::string IsfShaders::image_names(const IsfImage& image, std::size_t index) co
     return shader;
 }
 
-/// Of an image with the target's size, whose pixel lies on a texel and needs no filter. By the sampler's own
-/// name, the host can make a load from an image of the fetch.
+/// Text that fetches the pixel's own texel, for an image with the target's size, which needs no filter. The
+/// fetch names the sampler itself, so that the host can replace it by a load from an image.
 std::string IsfShaders::texel(const IsfImage& image, std::size_t index) const {
     const std::string here = texts.name_here(image.isf_name), number = std::to_string(index);
     if (here.empty()) return "";

@@ -24,7 +24,7 @@ extern const Words kOfIsf;
 
 /// Types of GLSL 4.50 that 1.20 has not.
 bool is_new_type(std::string_view word);
-/// Of GLSL 4.50, and none that older files know as such: no file has those as names.
+/// A keyword of GLSL 4.50 that GLSL 1.20 already had. No file uses one as a name.
 bool is_keyword(std::string_view word);
 /// "switch" and its like, of which another word may follow.
 bool is_statement_word(std::string_view word);
