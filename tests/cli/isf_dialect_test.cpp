@@ -87,11 +87,12 @@ TEST_F(IsfDialect, TakesNamesThatLaterVersionsOfGlslHaveForThemselves) {
                           word + "(0.5, 0.5, true)); }\n"),
             quarter_)
             << word;
-        if (word.starts_with("f"))
+        if (word.starts_with("f")) {
             EXPECT_EQ(pixel(R"("INPUTS": [{"NAME": ")" + word + R"(", "TYPE": "image"}])",
                             "void main() { gl_FragColor = texture2D(" + word + ", isf_FragNormCoord); }\n"),
                       ramp_)
                 << word;
+        }
     }
 }
 
@@ -294,10 +295,13 @@ TEST_F(IsfDialect, DrawsTheDisplayWindowWhateverTheDataWindow) {
                 const bool is_inside = wx >= 0 && wy >= 0 && wx < kWidth && wy < kHeight;
                 // Both filters read the data window's pixels alone; those of the crop lie in it.
                 const bool is_far = wx + 2 <= data.max_x && wy - 1 >= data.min_y;
-                for (int c = 0; c < 4; ++c)
-                    if (!is_inside) EXPECT_EQ(image.at(x, y, c), 0) << wx << " " << wy;
-                    else if (is_far)
+                for (int c = 0; c < 4; ++c) {
+                    if (!is_inside) {
+                        EXPECT_EQ(image.at(x, y, c), 0) << wx << " " << wy;
+                    } else if (is_far) {
                         EXPECT_NEAR(image.at(x, y, c), whole.at(wx, wy, c), 1e-6) << wx << " " << wy;
+                    }
+                }
             }
     }
 }
