@@ -72,7 +72,7 @@ protected:
         if (!difference.empty()) {
             const std::string fault = fault_of_loops(values, backend);
             if (fault.empty()) {
-                EXPECT_LE(largest_difference(drawn, computed), most_difference()) << where;
+                EXPECT_EQ(largest_difference(drawn, computed), 0) << where;
             }
             std::cout << difference << " differs on " << where << "\n    " << fault << "\n";
         }
@@ -104,10 +104,6 @@ protected:
             }
         return largest;
     }
-
-    /// docs/gpu.md: at a lens of 0.5 mm, llvmpipe computes the visible share of eight pixels in another last
-    /// place, and it is rounded to half.
-    double most_difference() const { return GetParam() == "dof" ? 0.0005 : 0; }
 
     /// llvmpipe counts iterations of several pixels together, fragments' and invocations' by other groups,
     /// and ends loops after 65,535: then neither picture is right.

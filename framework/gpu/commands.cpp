@@ -8,6 +8,7 @@
 
 #include "framework/base/error.h"
 #include "framework/gpu/context_internal.h"
+#include "framework/gpu/flushed_denormals.h"
 #include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
@@ -272,6 +273,7 @@ void dispatch_with(Context& context, const Program& program, const Bindings& bin
     const GladGLContext& gl = context.gl();
     {
         const PassScope pass(context, program, bindings);
+        const FlushedDenormals where_mesa_has_no_threads;
         submit(gl);
         if (pass.writes_memory()) gl.MemoryBarrier(GL_ALL_BARRIER_BITS);
     }

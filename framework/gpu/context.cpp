@@ -15,6 +15,7 @@
 #include "framework/gpu/context_internal.h"
 #include "framework/gpu/egl_current.h"
 #include "framework/gpu/egl_platform.h"
+#include "framework/gpu/flushed_denormals.h"
 #include "framework/gpu/foreign_context.h"
 #include "framework/gpu/fork_guard.h"
 #include "framework/gpu/handle.h"
@@ -117,6 +118,7 @@ const GladGLContext& Context::gl() const {
 }
 
 Context::Impl::Impl(const GlChoice& choice) {
+    const FlushedDenormals of_the_threads_of_mesa;
     watch_for_forks();
     if (current) current->release();
     platform = make_platform(choice);

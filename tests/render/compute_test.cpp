@@ -180,6 +180,26 @@ TEST_P(DrawsAsComputeShaders, GiveTheBitsOfFragmentsInGeneratedEffects) {
     }
 }
 
+TEST_P(DrawsAsComputeShaders, TreatDenormalFloatsAsFragmentsDo) {
+    EffectFolder effects;
+    effects.add("denormal",
+                R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+        "passes": [{ "name": "main", "shader": "main.frag", "reads": ["color"], "writes": ["color"] }])",
+                R"(void main() {
+    // 2^-133 for each column: a denormal that is a normal number again after two products.
+    float value = uintBitsToFloat(uint(gl_FragCoord.x) << 16);
+    out_color = vec4(value * 1e19 * 1e19, value > 0.0 ? 1.0 : 0.0, texelFetch(color, ivec2(gl_FragCoord.xy), 0).ba);
+})");
+    const std::string look = look_of(R"({"effect": "denormal"})");
+    const Capture capture = picture_of(16, 4, 1);
+    Bench drawn(effects, look, {}, GetParam(), {.draw_with = DrawWith::fragment});
+    Bench computed(effects, look, {}, GetParam(), {.draw_with = DrawWith::compute});
+    const Image a = drawn.color(capture), b = computed.color(capture);
+    EXPECT_TRUE(computed.renderer().draws().back().computes);
+    EXPECT_EQ(std::memcmp(a.floats().data(), b.floats().data(), a.floats().size_bytes()), 0)
+        << a.at(9, 0, 0) << " " << b.at(9, 0, 0) << ", " << a.at(9, 0, 1) << " " << b.at(9, 0, 1);
+}
+
 ON_EACH_BACKEND(DrawsAsComputeShaders);
 
 /// One pass from color to color, whose shader has `text`, and how it ran.
