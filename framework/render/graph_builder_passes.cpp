@@ -55,16 +55,14 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
         if (handle.version == 0 && !texture.options.clear) unwritten(build, spec, read.name);
         const bool is_input = !read.previous && build.inputs.contains(read.name);
         // An earlier step's texture may have levels, which an input has not.
-        const int level = read.level >= 0                     ? level_in_turn(read.level, turn)
-                          : is_input && texture.desc.mips > 1 ? 0
-                                                              : -1;
+        const int level = read.level ? read.level->in_turn(turn) : is_input && texture.desc.mips > 1 ? 0 : -1;
         pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap, level, read.is_pixel});
         const auto size = size_of(texture.desc, level);
         sizes.add(std::span<const float>(size));
     }
     for (const WriteSpec& write : bindings.sized_writes) {
         const auto& texture = graph.textures()[std::size_t(build.textures.at(write.name).texture)];
-        const auto size = size_of(texture.desc, level_in_turn(write.level, turn));
+        const auto size = size_of(texture.desc, write.level.in_turn(turn));
         sizes.add(std::span<const float>(size));
     }
     if (bindings.has_tile_grid) sizes.add(std::span<const float>(tile_grid));
@@ -124,7 +122,7 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
     pass.clear_value = four_values(spec.clear_value);
     const std::vector<WriteSpec> writes = present_writes(spec, build.params, build.present);
     for (const WriteSpec& write : writes)
-        pass.targets.push_back({build.textures.at(write.name), write.level, write.layer});
+        pass.targets.push_back({build.textures.at(write.name), write.level.number, write.layer.number});
     const graph::Written written = graph_.add_pass(std::move(pass));
     for (std::size_t i = 0; i < writes.size(); ++i) build.textures[writes[i].name] = written.targets[i];
 }
@@ -184,7 +182,7 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     if (spec.repeat) pass.uniforms.push_back({kPassBinding, bytes_of(PassBlock{turn, turns})});
     for (const WriteSpec& write : bindings.writes)
         pass.targets.push_back({write_target(build, bindings, write.name, pass.name),
-                                level_in_turn(write.level, turn), level_in_turn(write.layer, turn)});
+                                write.level.in_turn(turn), write.layer.in_turn(turn)});
     set_kind(build, spec, pass);
     add_wipes(build, spec, bindings, pass);
     pass.fusing = fusing_of(spec, pass);
@@ -211,7 +209,7 @@ std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const 
     if (spec.over.empty() && spec.lists.empty()) return {};
     const TileListSpec& list = *build.manifest().find_tile_list(spec.lists.empty() ? spec.over : spec.lists);
     const std::string& on = spec.lists.empty() ? bindings.writes.front().name : list.on;
-    const int level = spec.lists.empty() ? bindings.writes.front().level : 0;
+    const int level = spec.lists.empty() ? bindings.writes.front().level.number : 0;
     float width = float(width_), height = float(height_);
     if (!on.empty()) {
         const auto& desc = graph_.textures()[std::size_t(build.textures.at(on).texture)].desc;
@@ -242,7 +240,7 @@ graph::TextureHandle GraphBuilder::write_target(const StepBuild& build, const Pa
                                                 const std::string& name, const std::string& pass) {
     const graph::TextureHandle handle = build.textures.at(name);
     const auto reads_it = [&](const ReadSpec& read) {
-        return read.name == name && !read.previous && read.level < 0 && !build.inputs.contains(name);
+        return read.name == name && !read.previous && !read.level && !build.inputs.contains(name);
     };
     if (std::none_of(bindings.reads.begin(), bindings.reads.end(), reads_it)) return handle;
     const auto& texture = graph_.textures()[std::size_t(handle.texture)];

@@ -36,6 +36,10 @@ std::string grid_of(const std::optional<GridSpec>& grid) {
                               double(grid->tile.number), double(grid->size[0]), double(grid->size[1])});
 }
 
+std::string turn_text(TurnIndex index) {
+    return text_of({double(index.number), double(index.is_of_pass)});
+}
+
 /// All that the manifests of these tests say of inputs, textures, buffers, tile lists and passes, in order.
 Lines lines_of_manifest(const EffectManifest& manifest) {
     Lines lines;
@@ -64,10 +68,10 @@ Lines lines_of_manifest(const EffectManifest& manifest) {
                      double(p.dispatch.tile.number), double(p.dispatch.groups[0])}) +
             p.dispatch.over + conditions_of(p.when);
         for (const ReadSpec& r : p.reads)
-            line += " reads " + r.glsl_name() + text_of({double(r.filter), double(r.level)}) +
-                    conditions_of(r.when);
+            line += " reads " + r.glsl_name() + text_of({double(r.filter)}) +
+                    (r.level ? turn_text(*r.level) : "") + conditions_of(r.when);
         for (const WriteSpec& w : p.writes)
-            line += " writes " + w.name + text_of({double(w.level)}) + conditions_of(w.when);
+            line += " writes " + w.name + turn_text(w.level) + conditions_of(w.when);
         for (const auto* accesses : {&p.images, &p.buffers})
             for (const AccessSpec& a : *accesses)
                 line += " uses " + a.glsl_name() + text_of({double(a.kind)});
@@ -128,7 +132,7 @@ TEST(Groups, CountUpAndDownAndBesideEachOther) {
     EXPECT_EQ(manifest.textures[3].doc, "Half of 4, both; {");
     ASSERT_EQ(names_of(manifest.passes), (Lines{"down_both", "down_right", "down_left", "last"}));
     EXPECT_EQ(manifest.passes[1].writes[0].name, "right_1");
-    EXPECT_EQ(manifest.passes[1].writes[0].layer, 1);
+    EXPECT_EQ(manifest.passes[1].writes[0].layer, TurnIndex{1});
     EXPECT_EQ(manifest.passes[1].defines,
               (std::map<std::string, std::string>{{"N_1", "-2"}, {"SIZE", "-3 px"}}));
 }

@@ -61,18 +61,18 @@ TEST(ManifestPasses, KeepADrawWithLevelsAndTurns) {
     EXPECT_EQ(pass->max_iterations, 64);
     EXPECT_EQ(pass->reads[0].filter, gpu::Filter::linear);
     EXPECT_EQ(pass->reads[0].wrap, gpu::Wrap::zero);
-    EXPECT_EQ(pass->reads[0].level, kPassIndex);
-    EXPECT_EQ(pass->reads[1].level, 2);
-    EXPECT_EQ(pass->writes[0].level, kPassIndex + 1);
-    EXPECT_EQ(level_in_turn(pass->writes[0].level, 2), 3);
-    EXPECT_EQ(level_in_turn(pass->reads[1].level, 2), 2);
+    EXPECT_EQ(pass->reads[0].level, (TurnIndex{0, true}));
+    EXPECT_EQ(pass->reads[1].level, (TurnIndex{2, false}));
+    EXPECT_EQ(pass->writes[0].level, (TurnIndex{1, true}));
+    EXPECT_EQ(pass->writes[0].level.in_turn(2), 3);
+    EXPECT_EQ(pass->reads[1].level->in_turn(2), 2);
 
     const Made up(
         R"({"name": "up", "shader": "b.frag", "repeat": 2, "reads": [{"pyramid": {"level": "pass.index+2"}}],
         "writes": [{"stack": {"layer": "pass.index"}}]})");
-    EXPECT_EQ(up->reads[0].level, kPassIndex + 2);
-    EXPECT_EQ(up->writes[0].layer, kPassIndex);
-    EXPECT_EQ(up->writes[0].level, 0);
+    EXPECT_EQ(up->reads[0].level, (TurnIndex{2, true}));
+    EXPECT_EQ(up->writes[0].layer, (TurnIndex{0, true}));
+    EXPECT_EQ(up->writes[0].level, TurnIndex{});
 }
 
 TEST(ManifestPasses, KeepADrawOfInstances) {

@@ -119,13 +119,22 @@ struct BufferSpec {
     Place place;
 };
 
+/// A level or a layer: a number, or "pass.index" of a repeated pass with a number added.
+struct TurnIndex {
+    int number = 0;
+    bool is_of_pass = false;
+    /// In turn `turn` of the pass.
+    constexpr int in_turn(int turn) const { return is_of_pass ? turn + number : number; }
+    constexpr bool operator==(const TurnIndex&) const = default;
+};
+
 struct ReadSpec {
     std::string name;       ///< of an input or a texture
     bool previous = false;  ///< "<name>.prev": as it was at the end of the last frame
     gpu::Filter filter = gpu::Filter::nearest;
     bool is_pixel = false;  ///< the shader has the texel at its own pixel, and no sampler
     gpu::Wrap wrap = gpu::Wrap::clamp;
-    int level = -1;  ///< one level only, or kPassIndex + n; -1: all
+    std::optional<TurnIndex> level;  ///< one level only; nullopt: all
     /// All must hold, or there is no sampler. With any, the shader has HAS_<NAME> where it is there.
     std::vector<WhenSpec> when;
     Place place;
@@ -133,23 +142,9 @@ struct ReadSpec {
     std::string glsl_name() const { return previous ? name + "_prev" : name; }
 };
 
-/// A level or a layer that is "pass.index" of a repeated pass, plus this: kPassIndex + 1 is "pass.index + 1".
-/// Greater than every layer by more than any such number.
-inline constexpr int kPassIndex = 1000;
-/// Most that may be added to or taken from "pass.index".
-inline constexpr int kMaxPassOffset = 99;
-inline constexpr bool is_pass_index(int level) {
-    return level >= kPassIndex - kMaxPassOffset;
-}
-/// The level or layer in turn `index` of a repeated pass; as it is where it does not depend on the turn.
-inline constexpr int level_in_turn(int level, int index) {
-    return is_pass_index(level) ? level - kPassIndex + index : level;
-}
-
 struct WriteSpec {
     std::string name;  ///< of a texture or an output
-    int level = 0;     ///< or kPassIndex + n
-    int layer = 0;     ///< or kPassIndex + n
+    TurnIndex level, layer;
     /// All must hold, or there is no target. With any, the shader has HAS_OUT_<NAME> where it is there.
     std::vector<WhenSpec> when;
     Place place;

@@ -153,7 +153,7 @@ private:
         if (read.filter == gpu::Filter::linear && !filterable)
             state_.fault(read.place, "'" + read.name + "' cannot be filtered linearly: " +
                                          (input ? "its role is " + input->role : "its format is integer"));
-        if (read.level >= 0) check_place(state_, read.name, "level", read.level, texture, true, read.place);
+        if (read.level) check_place(state_, read.name, "level", *read.level, texture, true, read.place);
         if (read.is_pixel) check_pixel_read(read, input, texture);
     }
 
@@ -170,7 +170,7 @@ private:
         const GridSpec grid = texture ? texture->grid : GridSpec{};
         for (const WriteSpec& write : state_.pass->writes) {
             const TextureSpec* target = manifest_.find_texture(write.name);
-            if ((target ? target->grid : GridSpec{}) == grid && write.level == 0) continue;
+            if ((target ? target->grid : GridSpec{}) == grid && write.level == TurnIndex{}) continue;
             state_.fault(read.place, reads + "but its target '" + write.name + "' has another size");
         }
     }

@@ -26,7 +26,7 @@ struct PassState {
 
 /// That a level or layer, in every turn of a repeated pass, is one that the texture has. `key` is "level" or
 /// "layer".
-void check_place(PassState& state, const std::string& name, const std::string& key, int value,
+void check_place(PassState& state, const std::string& name, const std::string& key, TurnIndex value,
                  const TextureSpec* texture, bool reads, const Place& place);
 
 /// That what the pass writes is declared, and fits the pass, its other targets and what they hold already.

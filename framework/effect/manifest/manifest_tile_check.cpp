@@ -28,13 +28,13 @@ std::string fault_of_target(const EffectManifest& manifest, const TileListSpec& 
     const TextureSpec* texture = manifest.find_texture(write.name);
     if (!texture) return "";
     const GridSpec& grid = texture->grid;
-    if (grid.kind == GridSpec::Kind::size || is_pass_index(write.level)) return kScale;
+    if (grid.kind == GridSpec::Kind::size || write.level.is_of_pass) return kScale;
     const bool is_fixed = list.tile.param.empty() && list.on.empty();
-    if (grid.kind == GridSpec::Kind::scale && write.level == 0) return "";
+    if (grid.kind == GridSpec::Kind::scale && write.level.number == 0) return "";
     if (!is_fixed)
         return std::string(kScale) + ", and be its level 0: the list's tile is not a fixed number of px";
     if (grid.kind == GridSpec::Kind::scale)
-        return list.tile.number % (1 << write.level) == 0
+        return list.tile.number % (1 << write.level.number) == 0
                    ? ""
                    : "be of a level whose texels divide the list's tile of " +
                          std::to_string(list.tile.number) + " px";

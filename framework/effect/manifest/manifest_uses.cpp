@@ -14,11 +14,11 @@ bool take_prev(std::string& name) {
 
 namespace {
 
-/// A number, or kPassIndex and what is added to it.
-int level_of(const Reader& reader, const std::string& key, int otherwise) {
+std::optional<TurnIndex> turn_index(const Reader& reader, const std::string& key) {
     const Node* node = reader.find(key);
-    if (!node) return otherwise;
-    return node->is_string() ? kPassIndex + pass_offset(node->string).value_or(0) : int(node->integer);
+    if (!node) return std::nullopt;
+    if (node->is_string()) return TurnIndex{pass_offset(node->string).value_or(0), true};
+    return TurnIndex{int(node->integer)};
 }
 
 /// A name, or the one member of an object. "" after a fault.
@@ -39,7 +39,7 @@ ReadSpec read_of(const Node& item) {
     if (filter == "linear") read.filter = gpu::Filter::linear;
     read.is_pixel = filter == "pixel";
     read.wrap = reader.choice<gpu::Wrap>("outside");
-    read.level = level_of(reader, "level", -1);
+    read.level = turn_index(reader, "level");
     add_conditions(reader, read.when);
     return read;
 }
@@ -50,8 +50,8 @@ WriteSpec write_of(const Node& item) {
     write.name = name_of_use(item);
     if (item.members.size() != 1) return write;
     const Reader reader(item.members[0].value, write_block());
-    write.level = level_of(reader, "level", 0);
-    write.layer = level_of(reader, "layer", 0);
+    write.level = turn_index(reader, "level").value_or(TurnIndex{});
+    write.layer = turn_index(reader, "layer").value_or(TurnIndex{});
     add_conditions(reader, write.when);
     return write;
 }

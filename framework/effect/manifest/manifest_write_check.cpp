@@ -146,17 +146,17 @@ private:
         if (pass_->blend != gpu::Blend::none) state_.fault(write.place, both + " while it blends");
         if (texture.layers > 1) state_.fault(write.place, both + ", of which it writes one layer only");
         else if (texture.auto_mips) state_.fault(write.place, both + ", whose 'mips' are automatic");
-        else if (texture.mips > 1 && read->level < 0)
+        else if (texture.mips > 1 && !read->level)
             state_.fault(write.place, both + ", of which it writes one level only: name a level in the read");
-        else if (texture.mips > 1 && may_meet(read->level, write.level))
+        else if (texture.mips > 1 && may_meet(*read->level, write.level))
             state_.fault(write.place, both + " at the same level");
     }
 
-    bool may_meet(int read, int write) const {
-        if (is_pass_index(read) == is_pass_index(write)) return read == write;
+    bool may_meet(TurnIndex read, TurnIndex write) const {
+        if (read.is_of_pass == write.is_of_pass) return read == write;
         const int turns = pass_->repeat ? std::max(manifest_.most_of(*pass_->repeat), 1) : 1;
         for (int turn = 0; turn < turns; ++turn)
-            if (level_in_turn(read, turn) == level_in_turn(write, turn)) return true;
+            if (read.in_turn(turn) == write.in_turn(turn)) return true;
         return false;
     }
 
@@ -183,18 +183,14 @@ bool PassState::is_there(const std::string& file) const {
            std::filesystem::is_regular_file(pass->folder / file);
 }
 
-void check_place(PassState& state, const std::string& name, const std::string& key, int value,
+void check_place(PassState& state, const std::string& name, const std::string& key, TurnIndex value,
                  const TextureSpec* texture, bool reads, const Place& place) {
-    int low = value, high = value;
-    if (is_pass_index(value)) {
-        if (!state.pass->repeat) {
-            state.fault(place,
-                        "the " + key + " of '" + name + "' is 'pass.index', but the pass has no 'repeat'");
-            return;
-        }
-        low = level_in_turn(value, 0);
-        high = level_in_turn(value, std::max(state.manifest.most_of(*state.pass->repeat), 1) - 1);
+    if (value.is_of_pass && !state.pass->repeat) {
+        state.fault(place, "the " + key + " of '" + name + "' is 'pass.index', but the pass has no 'repeat'");
+        return;
     }
+    const int turns = state.pass->repeat ? std::max(state.manifest.most_of(*state.pass->repeat), 1) : 1;
+    const int low = value.in_turn(0), high = value.in_turn(turns - 1);
     int count = 1;
     if (texture && key == "layer") count = texture->layers;
     else if (texture) count = texture->auto_mips ? (reads ? 15 : 1) : texture->mips;
