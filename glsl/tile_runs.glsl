@@ -2,7 +2,7 @@
 // more than one of few large ones.
 
 // Of the corner gl_VertexID of the quad gl_InstanceID, in NDC. A rectangle is its first tile, and in the halves of the third word the
-// column and the row that follow its last one. The fourth word is another list's.
+// column and the row that follow its last one. The fourth word belongs to another list (host/list_tiles.comp).
 vec4 tile_position() {
     uvec4 run = TILE_RUNS[gl_InstanceID];
     vec2 p = float(TILE_SIDE) * vec2((gl_VertexID & 1) == 0 ? run.x : run.z & 0xffffu, gl_VertexID < 2 ? run.y : run.z >> 16);

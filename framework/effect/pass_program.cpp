@@ -82,6 +82,16 @@ bool has_loop(const ShaderSource& source) {
     return has_any_word(source, {"for", "while"});
 }
 
+std::string with_includes(const std::filesystem::path& file, const std::filesystem::path& glsl_folder) {
+    std::istringstream lines(read_text_file(file, ErrorKind::effect));
+    std::string text, line;
+    while (std::getline(lines, line)) {
+        const std::optional<ShaderInclude> include = parse_include(line);
+        text += include ? read_text_file(glsl_folder / include->name, ErrorKind::effect) : line + "\n";
+    }
+    return text;
+}
+
 }  // namespace
 
 ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_folder, ProgramStore store)
@@ -89,7 +99,7 @@ ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_fol
       glsl_folder_(std::move(glsl_folder)),
       store_(std::move(store)),
       full_screen_(read_text_file(glsl_folder_ / "fullscreen.vert", ErrorKind::effect)),
-      over_tiles_(host_vertex("tiles.vert")) {}
+      over_tiles_(with_includes(glsl_folder_ / "host" / "tiles.vert", glsl_folder_)) {}
 
 ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostics& faults) {
     ProgramSources sources;
@@ -235,27 +245,12 @@ void ProgramCache::drop_idle() {
     programs_.erase(oldest);
 }
 
-std::string ProgramCache::host_vertex(const std::string& file) const {
-    std::istringstream lines(read_text_file(glsl_folder_ / "host" / file, ErrorKind::effect));
-    std::string text, line;
-    while (std::getline(lines, line)) {
-        const std::optional<ShaderInclude> include = parse_include(line);
-        text += include ? read_text_file(glsl_folder_ / include->name, ErrorKind::effect) : line + "\n";
-    }
-    return text;
-}
-
-ProgramSources ProgramCache::host_sources(const std::string& file, const std::vector<std::string>& defines,
-                                          const std::string& vertex) const {
-    ProgramSources sources;
-    sources.vertex = vertex.empty() ? full_screen_ : host_vertex(vertex);
-    sources.main.text = read_text_file(glsl_folder_ / "host" / file, ErrorKind::effect);
-    std::string symbols;
+ProgramSources ProgramCache::host_sources(const std::string& file,
+                                          const std::vector<std::string>& defines) const {
+    std::string text = read_text_file(glsl_folder_ / "host" / file, ErrorKind::effect), symbols;
     for (const std::string& define : defines) symbols += "#define " + define + " 1\n";
-    for (std::string* const text : {&sources.main.text, &sources.vertex})
-        if (text != &sources.vertex || !vertex.empty()) text->insert(text->find('\n') + 1, symbols);
-    sources.label = "host." + file;
-    return sources;
+    text.insert(text.find('\n') + 1, symbols);
+    return full_screen(std::move(text), "host." + file);
 }
 
 ProgramSources ProgramCache::full_screen(std::string text, std::string label) const {

@@ -65,15 +65,9 @@ public:
     /// Whether a program is there already, or on disk.
     bool has(const ProgramSources& sources) const;
     /// A full-screen shader of the host's own, glsl/host/<file>, with symbols defined after its first line.
-    /// `vertex`: likewise, empty: over the full screen.
-    ProgramSources host_sources(const std::string& file, const std::vector<std::string>& defines,
-                                const std::string& vertex = "") const;
+    ProgramSources host_sources(const std::string& file, const std::vector<std::string>& defines) const;
     /// The same of a text.
     ProgramSources full_screen(std::string text, std::string label) const;
-    std::shared_ptr<const gpu::Program> host(const std::string& file, const std::vector<std::string>& defines,
-                                             const std::string& vertex = "") {
-        return get(host_sources(file, defines, vertex));
-    }
     /// Programs made from now on report into a storage block whether llvmpipe ended one of their loops.
     /// [before the first program]
     void guard_loops() { guards_loops_ = true; }
@@ -102,7 +96,6 @@ private:
     template <typename Make>
     Kept kept(const std::string& key, gpu::Stages stages, const std::string& label,
               const std::shared_ptr<const gpu::Program>& vertex, const Make& make);
-    std::string host_vertex(const std::string& file) const;  // with what it includes
     void drop_idle();
     gpu::Program make(const ProgramSources& sources, const std::string& key, std::size_t& binary_bytes);
     std::shared_ptr<const gpu::Program> vertex_stage(const std::string& text);

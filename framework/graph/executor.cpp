@@ -49,7 +49,6 @@ Executor::Executor(gpu::Context& context, FrameGraph graph, bool shares_memory)
     }
     allocate();
     find_histories();
-    sparse_ = std::make_unique<SparseClears>(context_, graph_, compiled_, slots_, buffer_slots_);
     clear_history();
     bind_clears();
     for (const int index : compiled_.passes) bound_.push_back(bind(index));
@@ -119,7 +118,7 @@ void Executor::bind_clears() {
         const int slot = compiled_.slot_of_texture[i];
         const bool is_there = are_zero && value == std::array<double, 4>{} &&
                               compiled_.first_in_slot[std::size_t(slot)] == int(i);
-        clears_[std::size_t(position)].textures.push_back({int(i), texture({int(i)}), value, is_there});
+        clears_[std::size_t(position)].textures.push_back({texture({int(i)}), value, is_there});
     }
     for (std::size_t i = 0; i < graph_.buffers().size(); ++i) {
         const int position = compiled_.buffer_cleared_before[i];
@@ -188,8 +187,7 @@ void Executor::set_uniforms(int pass, int binding, std::vector<std::byte> bytes)
 
 void Executor::run_clears(Clears& clears) {
     for (Clears::OfTexture& clear : clears.textures)
-        if (!sparse_->wipe(clear.index) && !std::exchange(clear.is_there, false))
-            clear.texture->clear_to(clear.value);
+        if (!std::exchange(clear.is_there, false)) clear.texture->clear_to(clear.value);
     for (const auto& [buffer, words] : clears.buffers) {
         const auto bytes = std::as_bytes(words);
         if (bytes.size() < buffer->size()) buffer->clear(0);
@@ -259,7 +257,6 @@ std::vector<PendingTime> Executor::issue(bool timed, const PassObserver& observe
     };
     for_written([](auto& history) { history.advance(); });
     if (range.begin > 0) forget_new_memory();
-    sparse_->begin(range);
     std::vector<PendingTime> times;
     if (timed) times.reserve(bound_.size());
     for (std::size_t i = 0; i < bound_.size(); ++i) {
@@ -268,7 +265,6 @@ std::vector<PendingTime> Executor::issue(bool timed, const PassObserver& observe
         if (timed) timer_.start();
         run_clears(clears_[i]);
         run_pass(bound_[i]);
-        sparse_->note_places(compiled_.passes[i]);
         if (timed) times.push_back({bound_[i].pass->name, timer_.stop()});
         if (timed && hooks_.waits) times.back().duration.ms();
         if (observer)
@@ -295,13 +291,7 @@ Executor::History Executor::history() {
     return result;
 }
 
-Executor::History Executor::history_to_write() {
-    sparse_->forget();
-    return history();
-}
-
 void Executor::clear_history() {
-    sparse_->forget();
     for (auto& history : texture_histories_) {
         history.current_is_newer = false;
         history.previous->clear_to({0, 0, 0, 0});
@@ -314,8 +304,6 @@ void Executor::clear_history() {
 
 std::vector<std::string> Executor::take_history_from(Executor& other) {
     assert(&context_ == &other.context_ && this != &other);
-    sparse_->forget();
-    other.sparse_->forget();
     std::vector<std::string> missing;
     const auto take = [&](auto& mine, auto& theirs, const auto& same) {
         for (auto& history : mine) {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,7 +15,6 @@
 #include "framework/gpu/timer.h"
 #include "framework/graph/frame_graph.h"
 #include "framework/graph/pass_range.h"
-#include "framework/graph/sparse_clears.h"
 
 namespace aftershade::graph {
 
@@ -79,14 +77,12 @@ public:
     }
 
     /// The textures that the next run will read as `previous`, by the history's name; only those that some
-    /// pass reads. To be read; the pointers hold until the next run.
+    /// pass reads. The pointers hold until the next run.
     struct History {
         std::map<std::string, gpu::Texture*> textures;
         std::map<std::string, gpu::Buffer*> buffers;
     };
     History history();
-    /// The same, to be given other content.
-    History history_to_write();
     /// Sets every `previous` to zero: a cut, a gap, the first frame.
     void clear_history();
     /// Takes the histories over whose name and description are those of `other`, for a graph that was rebuilt
@@ -117,7 +113,6 @@ private:
     /// Resources that are set to their `clear` before a pass.
     struct Clears {
         struct OfTexture {
-            int index = 0;  // in the graph
             gpu::Texture* texture = nullptr;
             std::array<double, 4> value{};
             bool is_there = false;  ///< the memory is new, and a driver's zeros are the value
@@ -161,7 +156,6 @@ private:
     std::vector<HistorySlots<gpu::Buffer>> buffer_histories_;
     std::vector<BoundPass> bound_;  // as compiled_.passes
     std::vector<Clears> clears_;    // one more than passes: what is cleared at the end
-    std::unique_ptr<SparseClears> sparse_;
     gpu::Timer timer_;
     PassHooks hooks_;
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -91,18 +90,6 @@ struct Groups {
     std::optional<BufferHandle> indirect{};
 };
 
-/// How one target of instances becomes its texture's `clear` again: the same instances once more, with a
-/// program whose colour is that value. The pass's own textures and blocks are not bound.
-struct Wipe {
-    /// The same one each time. The first frame needs none, so that it may be made once a second one does.
-    std::function<std::shared_ptr<const gpu::Program>()> program{};
-    UniformBlock uniforms{};
-    BufferUse places{};  ///< says where the instances lie; read by the pass too
-    /// Where the pass gives all pixels of its instances another colour: binding of the buffer that says where
-    /// the first pass to draw to this target will do the same, so that the program can leave that out.
-    std::optional<int> next_places{};
-};
-
 /// Whether a pass may be one part of a fused pass (framework/graph/fusion.h): not at all, the first, or one
 /// that begins with what others make.
 enum class Fusing { never, leads, follows };
@@ -118,7 +105,6 @@ struct Pass {
     std::vector<UniformBlock> uniforms{};
     gpu::Blend blend = gpu::Blend::none;
     Instances instances{};
-    std::vector<std::optional<Wipe>> wipes{};  ///< of instances: none, or one for each of `targets`
     Groups groups{};
     std::array<double, 4> clear_value = {0, 0, 0, 0};
     Fusing fusing = Fusing::never;
@@ -161,19 +147,6 @@ struct BufferHistory {
     BufferHandle current;
 };
 
-/// A cleared texture that passes draw to in places only, and that can be wiped there instead of cleared as a
-/// whole when it is next drawn to. It shares its memory with nothing.
-struct SparseTexture {
-    struct Place {
-        int pass = 0;    ///< by its index in the graph
-        int target = 0;  ///< of the pass
-    };
-    int texture = 0;
-    std::vector<Place> places{};  ///< of all draws to it
-    int first = 0;  ///< the first pass that uses it, and the last, by their indices in the graph
-    int last = 0;
-};
-
 /// A graph made ready to run: which passes, in which order, and which texture lies in which memory.
 struct CompiledGraph {
     std::vector<int> passes;  ///< indices of the passes that something kept depends on, in order
@@ -189,7 +162,6 @@ struct CompiledGraph {
     /// passes.size() for the end of the frame; -1 where nothing would see it.
     std::vector<int> texture_cleared_before;
     std::vector<int> buffer_cleared_before;
-    std::vector<SparseTexture> sparse;
     std::uint64_t bytes = 0;            ///< of all slots
     std::uint64_t bytes_unaliased = 0;  ///< what one texture per handle would take
 };

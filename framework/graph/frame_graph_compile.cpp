@@ -84,7 +84,6 @@ public:
                gpu::may_share_memory, original_of_);
         find_first_in_slots();
         set_formats_for_copies();
-        find_sparse();
         assign(graph_.buffers(), buffers_, compiled_.buffer_slots, compiled_.slot_of_buffer, bytes_of_buffer,
                std::equal_to(), std::vector<int>(graph_.buffers().size(), -1));
         for (std::size_t i = 0; i < resources_.size(); ++i) {
@@ -157,49 +156,6 @@ private:
                     graph_.textures()[texture].desc.format;
             }
         }
-    }
-
-    /// Textures of which buffers say where all draws lie. Only those that found nothing to share memory with,
-    /// so that none takes more for it.
-    void find_sparse() {
-        std::vector<int> textures_in(compiled_.slots.size());
-        for (const int slot : compiled_.slot_of_texture)
-            if (slot >= 0) ++textures_in[std::size_t(slot)];
-        std::vector<SparseTexture> found(buffers_);
-        std::vector<bool> is_drawn_elsewhere(buffers_);
-        for (std::size_t i = 0; i < buffers_; ++i) {
-            const FrameGraph::Texture& texture = graph_.textures()[i];
-            found[i].texture = int(i);
-            const int slot = compiled_.slot_of_texture[i];
-            is_drawn_elsewhere[i] = !texture.options.clear || !needed_[i][0] || texture.options.auto_mips ||
-                                    texture.desc.layers > 1 || slot < 0 || textures_in[std::size_t(slot)] > 1;
-        }
-        for (const int index : compiled_.passes) {
-            const Pass& pass = graph_.pass(index);
-            for (const ImageUse& use : pass.images)
-                if (use.access != gpu::Access::read)
-                    is_drawn_elsewhere[std::size_t(use.texture.texture)] = true;
-            for (std::size_t i = 0; i < pass.targets.size(); ++i) {
-                const auto texture = std::size_t(pass.targets[i].texture.texture);
-                if (!pass.wipes.empty() && pass.wipes[i]) found[texture].places.push_back({index, int(i)});
-                else is_drawn_elsewhere[texture] = true;
-            }
-        }
-        for (std::size_t i = 0; i < buffers_; ++i)
-            if (!is_drawn_elsewhere[i] && !found[i].places.empty()) add_sparse(std::move(found[i]));
-    }
-
-    void add_sparse(SparseTexture sparse) {
-        sparse.first = sparse.last = sparse.places.front().pass;
-        const auto is_of_it = [&](const Version& version) { return version.resource == sparse.texture; };
-        for (const int index : compiled_.passes) {
-            const PassUses& uses = uses_[std::size_t(index)];
-            if (std::ranges::none_of(uses.needs, is_of_it) && std::ranges::none_of(uses.makes, is_of_it))
-                continue;
-            sparse.first = std::min(sparse.first, index);
-            sparse.last = std::max(sparse.last, index);
-        }
-        compiled_.sparse.push_back(std::move(sparse));
     }
 
     void find_lifetimes() {

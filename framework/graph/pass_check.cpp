@@ -35,7 +35,6 @@ public:
         check_kind();
         check_counts();
         check_bindings();
-        check_wipes();
         for (const Read& read : pass_.reads) check_read(read);
         for (const Target& target : pass_.targets) check_target(target);
         for (const ImageUse& image : pass_.images) check_image(image);
@@ -125,27 +124,6 @@ private:
         for (const UniformBlock& block : pass_.uniforms)
             if (block.bytes.empty())
                 fail(fmt::format("has an empty uniform block at binding {}", block.binding));
-    }
-
-    void check_wipes() const {
-        if (pass_.wipes.empty()) return;
-        if (pass_.kind != PassKind::instances || pass_.wipes.size() != pass_.targets.size())
-            fail(fmt::format("has {} wipes for {} targets, or does not draw instances", pass_.wipes.size(),
-                             pass_.targets.size()));
-        for (std::size_t i = 0; i < pass_.wipes.size(); ++i)
-            if (pass_.wipes[i]) check_wipe(*pass_.wipes[i], pass_.targets[i]);
-    }
-
-    void check_wipe(const Wipe& wipe, const Target& target) const {
-        const Texture& texture = live(graph_, target.texture, user_);
-        if (!texture.options.clear) fail(fmt::format("wipes '{}', which is not cleared", texture.name));
-        if (!wipe.program || wipe.uniforms.bytes.empty())
-            fail(fmt::format("wipes '{}' without a program or its block", texture.name));
-        const auto reads = [&](const BufferUse& use) {
-            return use.buffer == wipe.places.buffer && use.access == gpu::Access::read;
-        };
-        if (std::none_of(pass_.buffers.begin(), pass_.buffers.end(), reads))
-            fail(fmt::format("wipes '{}' where a buffer says that the pass does not read", texture.name));
     }
 
     void check_range(const Texture& texture, int level, int layer) const {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -100,9 +99,6 @@ private:
                                         const PassBindings& bindings) const;
     graph::TextureHandle write_target(const StepBuild& build, const PassBindings& bindings,
                                       const std::string& name, const std::string& pass);
-    /// Says how the targets that are cleared become so again where a pass over tiles has drawn.
-    void add_wipes(const StepBuild& build, const PassSpec& spec, const PassBindings& bindings,
-                   graph::Pass& pass);
     void set_kind(const StepBuild& build, const PassSpec& spec, graph::Pass& pass) const;
     /// Gives the pass that is added next a block that is filled for each frame.
     void bind_block(const StepBuild& build, BlockKind kind, graph::Pass& pass);
@@ -121,8 +117,6 @@ private:
     int height_ = 0;
     graph::FrameGraph graph_;
     PassPrograms programs_;
-    std::map<std::vector<std::string>, std::function<std::shared_ptr<const gpu::Program>()>>
-        wipe_programs_;  // by defines
     std::unique_ptr<BuiltGraph> built_;
     std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;  // by role and offset
     /// By texture, version, is_single_ and the grid that it is on.

@@ -184,7 +184,6 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
         pass.targets.push_back({write_target(build, bindings, write.name, pass.name),
                                 write.level.in_turn(turn), write.layer.in_turn(turn)});
     set_kind(build, spec, pass);
-    add_wipes(build, spec, bindings, pass);
     pass.fusing = fusing_of(spec, pass);
     programs_.add(graph_.pass_count(), shader, build.step);
     const graph::Written written = graph_.add_pass(std::move(pass));

@@ -4,7 +4,8 @@
 #include <tile_groups.glsl>
 
 // Lists rectangles of tiles for which is_listed() holds, for draws over them: see tile_runs.glsl. The fourth words have nothing to do
-// with the rectangles: they hold the tiles of each group, bit by bit, for wipe.vert.
+// with the rectangles: they hold the tiles of each group, bit by bit, for passes that run as compute
+// shaders.
 layout(local_size_x = 1, local_size_y = 16) in;
 
 shared uint rows[16];  // a bit for each tile that is listed

@@ -147,8 +147,7 @@ std::uint64_t sum(const gpu::Buffer& counts) {
     return total;
 }
 
-/// Two frames to compile and touch everything, of which the second wipes what the first drew, then one that
-/// counts.
+/// Two frames to compile and touch everything, then one that counts.
 /// `read`: the capture of all cases, where the job has one.
 json measure(gpu::Context& context, gpu::Buffer& counts, const json& job, const json& test,
              EffectRegistry& effects, const std::optional<Capture>& read) {
