@@ -208,7 +208,7 @@ const shortcuts = new Shortcuts([
   { group: "Look", keys: ["Ctrl+Z"], words: "Undo", run: () => store.undo(), inText: "edited" },
   { group: "Look", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], words: "Redo", run: () => store.redo(), inText: "edited" },
   { group: "Look", keys: ["T"], words: "Steps, text or shaders", run: nextPanel },
-  { group: "Look", keys: ["X"], words: "Export a still, a contact sheet or the look", run: () => exporting.open() },
+  { group: "Look", keys: ["X"], words: "Export images, a video, a still, a contact sheet or the look", run: () => exporting.open() },
   { group: "Look", keys: ["Ctrl+Shift+C"], words: "Copy the command", run: copyCommand, inText: true },
   { group: "Steps", keys: ["A"], words: "Add a step", run: openAdd },
   { group: "Steps", keys: ["S"], words: "Go to the steps", run: () => (showPanel("steps"), list.focus(0)) },

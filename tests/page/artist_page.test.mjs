@@ -6,6 +6,7 @@ import {
   existsSync,
   mkdirSync,
   mkdtempSync,
+  readdirSync,
   readFileSync,
   rmSync,
   statSync,
@@ -463,4 +464,52 @@ for (const [colorScheme, width, height] of [
       await page.waitForFunction(() => window.aftershade.store.state.steps[0]?.effect === "dof");
     },
     { viewport: { width, height }, colorScheme },
+  );
+
+// ---- out ----
+
+for (const [colorScheme, width, height] of [
+  ["dark", 1440, 900],
+  ["light", 390, 844],
+])
+  walk(
+    `exports all frames as a video and as images, by keys alone, ${colorScheme}, ${width} px`,
+    async (page, folder) => {
+      await edit(page, { op: "add", at: 0, effect: "view_transform" });
+      const dialog = page.getByRole("dialog", { name: "Export" });
+      await page.keyboard.press("x");
+      const name = dialog.getByLabel("Name of the export");
+      await name.fill("../film");
+      await name.press("Enter");
+      await dialog.getByText("is not a name for the export").waitFor();
+      await axe(page, "export");
+      const hasVideo = spawnSync("ffprobe", ["-version"]).status === 0;
+      for (const [format, file] of [...(hasVideo ? [["mp4", "film.mp4"]] : []), ["png", "film"]]) {
+        await name.fill("film");
+        await dialog.getByLabel("Format").selectOption(format);
+        await name.press("Enter");
+        await dialog.getByText(/: frame [12] of 2/).waitFor();
+        if (format === "png") await shot(page, `exporting_${colorScheme}_${width}`);
+        await dialog.getByText(`Wrote ${join(folder, file)}`, { exact: true }).waitFor();
+      }
+      await shot(page, `exported_${colorScheme}_${width}`);
+      if (hasVideo) {
+        const entries = "stream=codec_name,width,height,nb_frames";
+        const probed = spawnSync("ffprobe", ["-v", "error", "-show_entries", entries, "-of", "csv=p=0", "film.mp4"], {
+          cwd: folder,
+          encoding: "utf8",
+        });
+        assert.equal(probed.stdout.trim(), "h264,480,270,2");
+      }
+      assert.deepEqual(readdirSync(join(folder, "film")), ["film_0003.png", "film_0004.png"]);
+      assert.deepEqual(readdirSync(folder).filter((file) => file.startsWith(".")), []);
+      await name.press("Enter");
+      await dialog.getByText("is there already; choose another name").waitFor();
+      await name.fill("other");
+      await name.press("Enter");
+      await dialog.getByRole("button", { name: "Cancel" }).press("Enter");
+      await dialog.getByText("other: cancelled; nothing was written").waitFor();
+      assert.ok(!existsSync(join(folder, "other")));
+    },
+    { viewport: { width, height }, colorScheme, mayFail: true }, // refusals, which the browser logs as errors
   );
