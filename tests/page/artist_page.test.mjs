@@ -513,3 +513,90 @@ for (const [colorScheme, width, height] of [
     },
     { viewport: { width, height }, colorScheme, mayFail: true }, // refusals, which the browser logs as errors
   );
+
+// ---- hands ----
+
+const typedIn = (row, text) => row.getByRole("textbox").fill(text).then(() => row.getByRole("textbox").press("Enter"));
+
+walk("adds up what is typed, and changes a number by a drag on it", async (page) => {
+  await edit(page, { op: "add", at: 0, effect: "dof" });
+  const row = (await opened(page, "dof")).locator('[data-param="focus_distance"]');
+  for (const [text, wanted] of [
+    ["6+0.4", 6.4],
+    ["(2,5 + 1) * 2", 7],
+    ["6+0.4 m", "6.4 m"],
+  ]) {
+    await typedIn(row, text);
+    await until(page, "focus_distance", wanted);
+  }
+  await typedIn(row, "6+");
+  await row.getByText("6+ is not a number").waitFor();
+  await row.getByRole("textbox").press("Escape");
+  await typedIn(row, "6");
+  await until(page, "focus_distance", "6 m");
+  await page.locator(".opener").first().focus();
+  const box = await row.getByRole("textbox").boundingBox(),
+    [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 30, y, { steps: 6 });
+  await page.mouse.up();
+  // A tenth of the slider, whose ends are a factor of 500 apart.
+  await page.waitForFunction(
+    (wanted) => Math.abs(parseFloat(window.aftershade.store.state.steps[0].params.focus_distance.value) / wanted - 1) < 0.05,
+    6 * 500 ** 0.1,
+  );
+  await page.keyboard.press("Control+z");
+  await until(page, "focus_distance", "6 m"); // the drag was one change
+  await row.getByRole("textbox").click();
+  assert.ok(await row.getByRole("textbox").evaluate((node) => node === document.activeElement));
+});
+
+walk("moves the border of the look by pointer and keys, and keeps its place", async (page) => {
+  const border = page.getByRole("separator", { name: "Width of the look" }),
+    width = () => page.locator("#look").evaluate((node) => Math.round(node.getBoundingClientRect().width)),
+    before = await width(),
+    box = await border.boundingBox();
+  await page.mouse.move(box.x + 4, box.y + 200);
+  await page.mouse.down();
+  await page.mouse.move(box.x - 96, box.y + 200, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await width(), before + 100);
+  await border.press("ArrowLeft");
+  assert.equal(await width(), before + 116);
+  assert.equal(await border.getAttribute("aria-valuenow"), String(before + 116));
+  await axe(page, "border");
+  await page.reload();
+  await drawn(page);
+  assert.equal(await width(), before + 116);
+  await border.dblclick();
+  assert.equal(await width(), before);
+});
+
+walk("explains the value with the focus, not the one under the pointer", async (page) => {
+  await edit(page, { op: "add", at: 0, effect: "dof" });
+  const card = await opened(page, "dof"),
+    help = page.locator(".explain");
+  await card.locator('[data-param="f_number"]').hover();
+  assert.match(await help.innerText(), /^Focal length divided by/);
+  await card.locator('[data-param="focus_distance"]').getByRole("textbox").focus();
+  await card.locator('[data-param="f_number"]').hover();
+  assert.match(await help.innerText(), /^Distance along the view axis/);
+});
+
+walk("asks before a look with faults is saved", async (page, folder) => {
+  await edit(page, { op: "add", at: 0, effect: "vignette" });
+  await edit(page, { op: "set", step: 0, param: "amount", value: 1e9 });
+  const asks = page.getByRole("dialog", { name: "The look has a fault" });
+  await page.keyboard.press("Control+s");
+  await asks.waitFor();
+  await axe(page, "faulty save");
+  await page.keyboard.press("Enter"); // Cancel has the focus
+  await asks.waitFor({ state: "detached" });
+  await page.keyboard.press("Control+s");
+  await asks.getByRole("button", { name: "Save with faults" }).press("Enter");
+  await page.getByRole("dialog", { name: "Save the look" }).getByLabel("Name of the look").fill("faulty");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => window.aftershade.store.state.look.has_file);
+  assert.ok(existsSync(join(folder, "faulty.json")));
+});
