@@ -600,3 +600,26 @@ walk("asks before a look with faults is saved", async (page, folder) => {
   await page.waitForFunction(() => window.aftershade.store.state.look.has_file);
   assert.ok(existsSync(join(folder, "faulty.json")));
 });
+
+walk("shifts a colour by its wheel and keeps the mean", async (page) => {
+  await edit(page, { op: "add", at: 0, effect: "color_grade" });
+  await edit(page, { op: "set", step: 0, param: "slope", value: [1, 1.2, 0.8] });
+  const row = (await opened(page, "color_grade")).locator('[data-param="slope"]'),
+    slope = () => page.evaluate(() => window.aftershade.store.state.steps[0].params.slope.value),
+    box = await row.locator(".wheel").boundingBox(),
+    [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y - box.height / 4, { steps: 5 }); // half of the radius towards red
+  await page.mouse.up();
+  await page.waitForFunction(() => window.aftershade.store.state.steps[0].params.slope.value[0] > 1.2);
+  const [red, green, blue] = await slope();
+  assert.ok(Math.abs((red + green + blue) / 3 - 1) < 0.01, [red, green, blue].join());
+  assert.ok(Math.abs(green - blue) < 0.05 && Math.abs(red - 1 + 2 * (green - 1)) < 0.05, [red, green, blue].join());
+  await axe(page, "wheel");
+  await shot(page, "wheel");
+  await page.keyboard.press("Control+z");
+  await until(page, "slope", [1, 1.2, 0.8]); // the drag was one change
+  await row.locator(".wheel").dblclick();
+  await until(page, "slope", [1, 1, 1]);
+});
