@@ -623,3 +623,45 @@ walk("shifts a colour by its wheel and keeps the mean", async (page) => {
   await row.locator(".wheel").dblclick();
   await until(page, "slope", [1, 1, 1]);
 });
+
+for (const [colorScheme, width, height] of [
+  ["dark", 1440, 900],
+  ["light", 390, 844],
+])
+  walk(
+    `shows parameters under headings and folds the advanced ones away, ${colorScheme}, ${width} px`,
+    async (page) => {
+      await edit(page, { op: "add", at: 0, effect: "dof" });
+      const card = await opened(page, "dof"),
+        names = (place) => card.locator(place).evaluateAll((rows) => rows.map(({ dataset }) => dataset.param));
+      const { params } = JSON.parse(
+        spawnSync(program, ["describe", "dof", "--json"], { encoding: "utf8" }).stdout,
+      );
+      const wanted = (fits) => Object.keys(params).filter((name) => fits(params[name]));
+      await page.getByRole("group", { name: "Aperture" }).waitFor();
+      assert.deepEqual(
+        await names('[role=group][aria-labelledby]:has(> .section-name:text-is("Aperture")) > .row'),
+        wanted(({ section, advanced }) => section === "Aperture" && !advanced),
+      );
+      const fold = card.locator("details.advanced");
+      assert.deepEqual(
+        await names("details.advanced > .row"),
+        wanted(({ advanced }) => advanced),
+      );
+      assert.ok(!(await fold.evaluate((node) => node.open)));
+      assert.ok(await card.locator('[data-param="focus_distance"]').isVisible());
+      await axe(page, "sections");
+      await card.scrollIntoViewIfNeeded();
+      await shot(page, `sections_${colorScheme}_${width}`);
+      await fold.locator("summary").press("Enter");
+      assert.ok(await card.locator('[data-param="quality"]').isVisible());
+      // A step whose look sets one of them opens the fold by itself.
+      await edit(page, { op: "add", at: 1, effect: "dof" });
+      await edit(page, { op: "set", step: 1, param: "quality", value: "exact" });
+      await page.reload();
+      await drawn(page);
+      await page.locator(".opener").nth(1).click();
+      await page.locator('.step >> nth=1 >> [data-param="quality"]').waitFor();
+    },
+    { viewport: { width, height }, colorScheme },
+  );

@@ -159,9 +159,13 @@ inPage("makes a control for every parameter of every effect from its declaration
         hint: node.querySelector(".hint").textContent,
       })),
     );
+    // Without a section first, then by section, and the advanced ones last.
+    const named = Object.entries(params),
+      sections = [...new Set(["", ...named.map(([, { section = "" }]) => section)])],
+      inOrder = sections.flatMap((one) => named.filter(([, p]) => !p.advanced && (p.section ?? "") === one));
     assert.deepEqual(
       rows.map((one) => one.id),
-      Object.keys(params),
+      [...inOrder, ...named.filter(([, p]) => p.advanced)].map(([name]) => name),
       id,
     );
     for (const one of rows) {
@@ -254,6 +258,7 @@ inPage("sets choices, switches, colours and lists", async (page) => {
   await row(bokeh, "shape").getByRole("combobox").selectOption("octagon");
   assert.equal((await changed(page, before)).steps[0].params.shape, "octagon");
   before = await textOf(page);
+  await bokeh.getByText("Advanced").click();
   await row(bokeh, "highlight_repair").getByRole("checkbox").uncheck();
   assert.equal((await changed(page, before)).steps[0].params.highlight_repair, false);
   before = await textOf(page);
