@@ -665,3 +665,60 @@ for (const [colorScheme, width, height] of [
     },
     { viewport: { width, height }, colorScheme },
   );
+
+// ---- the whole way ----
+
+walkBlender("goes from a frame of Blender to a film by hand, without a line of JSON", async (page, folder) => {
+  // A look to start from, focused on Suzanne by a click and on the cube a frame later.
+  await page.locator(".start", { hasText: "Portrait" }).click();
+  await page.waitForFunction(() => window.aftershade.store.state.steps.length > 1);
+  assert.equal((await steps(page))[0], "dof");
+  const row = (await opened(page, "dof")).locator('[data-param="focus_distance"]');
+  await row.getByRole("button", { name: /^Pick/ }).click();
+  await clickAt(page, ...SUZANNE);
+  await until(page, "focus_distance", { from: "depth", object: "Suzanne" });
+  await row.getByRole("button", { name: /^Key/ }).click();
+  await page.keyboard.press(".");
+  await row.getByRole("button", { name: /^Choose the object/ }).click();
+  await page.keyboard.type("cube");
+  await page.locator("#found-objects .name", { hasText: "Cube" }).first().waitFor();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => Object.keys(window.aftershade.store.state.steps[0].params.focus_distance.value.keys).length === 2);
+  await shot(page, "walk_rack");
+  // A darker frame, but not over Suzanne.
+  const vignette = (await steps(page)).indexOf("vignette");
+  assert.ok(vignette > 0);
+  const card = await opened(page, "vignette");
+  await card.getByLabel("Mask by").selectOption("object");
+  await card.getByRole("button", { name: "Pick the mask's object" }).click();
+  await clickAt(page, ...SUZANNE);
+  await page.waitForFunction((at) => window.aftershade.store.state.steps[at].mask?.object === "Suzanne", vignette);
+  await card.getByLabel("Invert the mask").check();
+  await page.waitForFunction((at) => window.aftershade.store.state.steps[at].mask?.invert === true, vignette);
+  await shot(page, "walk_mask");
+  // Saved, then exported.
+  await page.keyboard.press("Control+s");
+  await page.keyboard.type("shot");
+  await page.keyboard.press("Enter");
+  await page.locator(".save-dialog").waitFor({ state: "hidden" });
+  await page.keyboard.press("x");
+  const dialog = page.getByRole("dialog", { name: "Export" });
+  for (const format of spawnSync("ffprobe", ["-version"]).status === 0 ? ["png", "mp4"] : ["png"]) {
+    await dialog.getByLabel("Format").selectOption(format);
+    await dialog.getByLabel("Name of the export").press("Enter");
+    await dialog.getByText(`Wrote ${join(folder, format === "png" ? "shot" : "shot.mp4")}`, { exact: true }).waitFor();
+  }
+  await axe(page, "walk");
+  // What the page wrote is what `run` draws with the saved look, to the bit.
+  const run = spawnSync(program, ["run", "shot.json", "multi_####.exr", "-o", "own_####.png", "--no-journal"], {
+    cwd: folder,
+    env: environment,
+    encoding: "utf8",
+  });
+  assert.equal(run.status, 0, run.stderr);
+  for (const frame of ["0003", "0004"])
+    assert.ok(
+      readFileSync(join(folder, `shot/shot_${frame}.png`)).equals(readFileSync(join(folder, `own_${frame}.png`))),
+      frame,
+    );
+});
