@@ -158,7 +158,8 @@ def render_all(settings, open_page):
     cancelled = end_with(settings.give_back)
     handlers.render_complete.append(complete)
     handlers.render_cancel.append(cancelled)
-    bpy.ops.render.render("INVOKE_DEFAULT", animation=True)
+    if "CANCELLED" in bpy.ops.render.render("INVOKE_DEFAULT", animation=True):  # another render runs
+        cancelled()
 
 
 class AFTERSHADE_Preferences(bpy.types.AddonPreferences):

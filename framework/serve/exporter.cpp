@@ -19,6 +19,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Of the hidden folder: the job's own files lie beside it, since results may have any name.
+constexpr const char* kResults = "results";
+
 /// The ending of the one file; "" for images, which lie in a folder.
 std::string ending_of(const std::string& format) {
     if (format == "png" || format == "exr") return "";
@@ -45,16 +48,17 @@ void Exporter::start(const ExportRequest& request) {
     const std::lock_guard lock(mutex_);
     if (runs_) throw Refusal{409, "'" + name_ + "' is being exported; wait for it or cancel it"};
     const std::string ending = ending_of(request.format);
+    if (request.name.find('#') != std::string::npos)
+        throw Refusal{400, "'" + request.name +
+                               "' is not a name for the export: '#' stands for the digits of frame numbers"};
     const fs::path target = new_path(request.look_folder, request.name, ending, "the export");
     if (!ending.empty() && program_on_path("ffmpeg").empty())
         throw Refusal{
             409, "a video needs ffmpeg on PATH (Debian package ffmpeg); export PNG or EXR images instead"};
     if (thread_.joinable()) thread_.join();  // it has ended, since none runs
     const fs::path folder = hidden_folder(request.look_folder);
-    const fs::path look = folder / "look.json", result = folder / target.filename();
-    replace_text_file(look, "", request.text);
-    if (ending.empty()) fs::create_directory(result);
-    ExportJob job{look, request.look_folder, request.capture,
+    const fs::path result = folder / kResults / target.filename();
+    ExportJob job{folder / "look.json", request.look_folder, request.capture,
                   ending.empty() ? result / (request.name + "_####." + request.format) : result,
                   request.files};
     runs_ = true;
@@ -63,12 +67,16 @@ void Exporter::start(const ExportRequest& request) {
     written_ = fault_ = "";
     done_ = 0;
     frames_ = request.frames;
-    thread_ = std::thread([this, job = std::move(job), folder, target] { work(job, folder, target); });
+    thread_ = std::thread([this, job = std::move(job), text = request.text, folder, target] {
+        work(job, text, folder, target);
+    });
 }
 
-void Exporter::work(ExportJob job, fs::path folder, fs::path target) {
+void Exporter::work(const ExportJob& job, const std::string& text, const fs::path& folder,
+                    const fs::path& target) {
     std::string fault;
     try {
+        write_text_file(job.look, text);
         fault = run_(
             job,
             [&] {
@@ -79,7 +87,7 @@ void Exporter::work(ExportJob job, fs::path folder, fs::path target) {
         if (cancel_) fault = "cancelled; nothing was written";
         if (fault.empty()) {
             new_path(target.parent_path(), target.filename().string(), "", "the export");
-            fs::rename(folder / target.filename(), target);
+            fs::rename(folder / kResults / target.filename(), target);
         }
     } catch (const Refusal& refusal) {
         fault = refusal.message;

@@ -59,7 +59,8 @@ public:
     nlohmann::ordered_json state() const;
 
 private:
-    void work(ExportJob job, std::filesystem::path folder, std::filesystem::path target);
+    void work(const ExportJob& job, const std::string& text, const std::filesystem::path& folder,
+              const std::filesystem::path& target);
 
     const RunExport run_;
     std::atomic<bool> cancel_ = false;

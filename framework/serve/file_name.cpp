@@ -8,7 +8,7 @@ namespace aftershade::serve {
 std::filesystem::path new_path(const std::filesystem::path& folder, const std::string& name,
                                const std::string& ending, const std::string& thing) {
     constexpr std::size_t kLongestName = 200;  // bytes; file systems take 255 with what AtomicFile adds
-    if (name.empty()) throw Refusal{400, thing + " has no name yet: save it under one"};
+    if (name.empty()) throw Refusal{400, thing + " has no name yet: type one"};
     const bool has_control = std::ranges::any_of(name, [](unsigned char c) { return c < 32 || c == 127; });
     if (name.size() > kLongestName || name.front() == '.' || has_control ||
         name.find('/') != std::string::npos)

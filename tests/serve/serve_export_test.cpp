@@ -60,6 +60,9 @@ TEST_F(ServeExport, WritesEachFrameOfTheLookAsEditedAsRunWritesIt) {
             << frame;
     EXPECT_EQ(read_text_file(folder_ / "look.json", ErrorKind::output), kLook) << "it was not saved";
     EXPECT_EQ(begin("shot", "exr").status, 409) << "the name is taken";
+    ASSERT_EQ(begin("job", "exr").status, 200) << "a file of the export's own has this name";
+    EXPECT_EQ(ended()["fault"], "");
+    EXPECT_TRUE(fs::is_regular_file(folder_ / "job/job_0003.exr"));
 }
 
 TEST_F(ServeExport, LeavesNothingOfWhatIsCancelled) {
@@ -85,7 +88,7 @@ TEST_F(ServeExport, LeavesNothingWhereAFrameFailsAndSaysWhy) {
 
 TEST_F(ServeExport, RefusesNamesThatLeaveTheFolderOtherFormatsAndLooksWithFaults) {
     start();
-    for (const char* name : {"", "../out", "/tmp/out", ".out", "a/b"})
+    for (const char* name : {"", "../out", "/tmp/out", ".out", "a/b", "a#b"})
         EXPECT_EQ(begin(name, "png").status, 400) << name;
     EXPECT_EQ(begin("shot", "gif").status, 400);
     EXPECT_EQ(post("/api/export/start", "{}").status, 400);
