@@ -79,7 +79,15 @@ function vectorControl({ label, parameter, describedBy, commit }) {
       });
   return {
     isTall: isColor,
-    nodes: [element("span", { class: "wide vector" }, disc ? disc.node : null, swatch || null, ...fields.map(({ node }) => node))],
+    nodes: [
+      element(
+        "span",
+        { class: "wide vector" },
+        disc ? disc.node : null,
+        swatch || null,
+        fields.map(({ node }) => node),
+      ),
+    ],
     update(next) {
       entry = next;
       const numbers = list(next.effective).map((one) => values.numberOf(one, parameter.unit));

@@ -77,7 +77,7 @@ function scrubbed(input, { begin, move, end }) {
       const px = clientX - event.clientX;
       if (begun === null && Math.abs(px) < 3) return;
       begun ??= begin();
-      move(begun, px);
+      if (Number.isFinite(begun)) move(begun, px);
     };
     input.addEventListener("pointermove", drag);
     input.addEventListener(

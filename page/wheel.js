@@ -25,6 +25,7 @@ export function wheel({ label, reach, change }) {
     node = element("span", { class: "wheel", title: "Drag to shift the colour; double-click for grey" }, dot);
   node.setAttribute("aria-hidden", "true");
   let now = [0, 0, 0],
+    begun = now, // where a drag began: its mean stays while limits cut a channel
     gesture = "";
   const place = (event) => {
     const box = node.getBoundingClientRect(),
@@ -33,11 +34,12 @@ export function wheel({ label, reach, change }) {
       length = Math.max(Math.hypot(x, y), 1);
     return [x / length, y / length];
   };
-  const drag = (event) => change(numbersAt(place(event), now, reach), gesture);
+  const drag = (event) => change(numbersAt(place(event), begun, reach), gesture);
   node.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
     event.preventDefault();
     node.setPointerCapture(event.pointerId);
+    begun = now;
     gesture = `wheel ${label} ${performance.now()}`;
     node.addEventListener("pointermove", drag);
     node.addEventListener("lostpointercapture", () => node.removeEventListener("pointermove", drag), { once: true });
