@@ -4,8 +4,11 @@
 #include <CLI/CLI.hpp>
 
 #include <iostream>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
@@ -50,16 +53,26 @@ std::string text_of(const std::string& word, const Opened& capture) {
     std::string text =
         fmt::format("{}: {}, {} x {} px\nroles: {}\n", word, counted(capture.sequence.frames.size(), "frame"),
                     window.width(), window.height(), joined(capture.header.roles, ", ", ", "));
+    const std::map<std::string, std::string>& known = capture.header.remedies;
+    std::map<std::string, std::string> remedies;  // by role that a look lacks
     std::string first;
     for (const StartingLook& look : looks) {
-        if (look.missing) {
-            text += fmt::format("  {:<10} needs the role {}\n", look.name(), look.missing->role);
+        if (!look.missing.empty()) {
+            std::vector<std::string> roles;
+            for (const MissingRole& missing : look.missing) {
+                roles.push_back(missing.role);
+                if (const auto found = known.find(missing.role); found != known.end())
+                    remedies.insert(*found);
+            }
+            text += fmt::format("  {:<10} needs {} {}\n", look.name(),
+                                roles.size() == 1 ? "the role" : "the roles", joined(roles, " and "));
             continue;
         }
         if (first.empty()) text += "looks to start from:\n";
         if (first.empty() || look.name() == "portrait") first = look.file.string();
         text += fmt::format("  {:<10} {}\n", look.name(), look.summary);
     }
+    for (const auto& [role, remedy] : remedies) text += fmt::format("for {}: {}\n", role, remedy);
     const char* output = capture.sequence.frames.size() == 1 ? "out.png" : "out_####.png";
     if (!first.empty())
         text += "draw one: " + printed_command({"aftershade", "run", first, word, "-o", output}) + "\n";

@@ -139,7 +139,10 @@ std::string role_lines(const Inspection& inspection) {
                 printable(fmt::format("{}", fmt::join(channels_of(*inspection.capture, role), " "))));
     if (!inspection.depth_kind.empty())
         text += fmt::format("  {:<14}  {}\n", "(depth)", inspection.depth_kind);
-    return text + fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
+    text += fmt::format("  {:<14}  {}\n", "(missing)", fmt::join(inspection.missing_roles(), ", "));
+    for (const auto& [role, remedy] : inspection.remedies())
+        text += fmt::format("    {}: {}\n", role, printable(remedy));
+    return text;
 }
 
 std::string layer_lines(const CaptureHeader& capture) {
@@ -297,6 +300,13 @@ std::vector<std::string> Inspection::missing_roles() const {
     return missing;
 }
 
+std::map<std::string, std::string> Inspection::remedies() const {
+    std::map<std::string, std::string> remedies;
+    for (const std::string& role : missing_roles())
+        if (capture && capture->remedies.contains(role)) remedies[role] = capture->remedies.at(role);
+    return remedies;
+}
+
 const InspectedChannel* Inspection::first_unreadable() const {
     for (const InspectedPart& part : parts)
         for (const InspectedChannel& channel : part.channels)
@@ -348,6 +358,7 @@ std::string json_of(const Inspection& inspection) {
             json["roles"][role] = channels_of(*inspection.capture, role);
     json["depth_kind"] = inspection.depth_kind;
     json["missing"] = inspection.missing_roles();
+    json["remedies"] = inspection.remedies();
     json["camera"] = camera_json(inspection.capture ? inspection.capture->camera : Camera{});
     json["lights"] =
         lights_json(inspection.capture ? inspection.capture->lights : std::vector<CaptureLight>());

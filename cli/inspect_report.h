@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ struct Inspection {
 
     /// The fixed roles that the capture lacks; all where no profile fits.
     std::vector<std::string> missing_roles() const;
+    /// Of those, by role: the settings of the producer that write it.
+    std::map<std::string, std::string> remedies() const;
     /// The first channel that could not be read for a fault of the file; nullptr where all could.
     const InspectedChannel* first_unreadable() const;
 };

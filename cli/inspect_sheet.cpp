@@ -33,7 +33,7 @@ Image read_display(const Sequence& sequence, const CaptureReader& reader, int fr
     const CaptureHeader& header = capture.header;
     print_differences(header);
     if (!capture.images.contains(kColorRole))
-        throw missing_role({"a thumbnail", kColorRole}, header, &reader);
+        throw missing_roles({{"a thumbnail", kColorRole}}, header, &reader);
     return cropped_display(display_of_color(std::move(capture.images.at(kColorRole)), header.primaries),
                            header.data_window, header.display_window);
 }

@@ -1,3 +1,5 @@
+#include "cli/run.h"
+
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <iostream>
@@ -243,6 +245,8 @@ std::jthread load_library_ahead(gpu::Backend backend) {
     }
 }
 
+}  // namespace
+
 ExitCode run(const RunArguments& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
     const gpu::Backend backend = chosen_gl(options.gl, part_of(options)).backend;
@@ -272,8 +276,6 @@ ExitCode run(const RunArguments& options) {
     if (const auto code = run_in_worker(options.plugins, run.bound->pipeline.has_foreign())) return *code;
     return run_here(options, run, reader, profile_documents, stop);
 }
-
-}  // namespace
 
 Verb add_run(CLI::App& app) {
     auto options = std::make_shared<RunArguments>();

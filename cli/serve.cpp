@@ -25,6 +25,7 @@
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
 #include "cli/plugin_options.h"
+#include "cli/serve_export.h"
 #include "cli/verbs.h"
 #include "framework/base/data_path.h"
 #include "framework/base/error.h"
@@ -166,15 +167,17 @@ serve::LookModel::File kind_of_file(const std::string& look) {
     return File::fresh;
 }
 
-/// The sequence of a capture. The frames and files that the command names apply only to the command's own
-/// capture.
-Sequence open_sequence(CaptureOptions options, const std::string& capture,
-                       const std::vector<Profile>& profiles) {
+/// The options for another capture: the frames and files that the command names apply only to its own.
+CaptureOptions options_for(CaptureOptions options, const std::string& capture) {
     if (capture != options.capture) {
         options.capture = capture;
         options.frames.clear();
         options.role_files.clear();
     }
+    return options;
+}
+
+Sequence open_sequence(const CaptureOptions& options, const std::vector<Profile>& profiles) {
     Diagnostics faults;
     auto sequence = find_sequence(options, profiles, faults);
     if (!sequence || faults.has_errors()) {
@@ -193,8 +196,10 @@ serve::ServeOptions serve_options(const ServeArguments& arguments, Diagnostics& 
     options.look = arguments.look.empty() ? "untitled.json" : arguments.look;
     options.look_file = kind_of_file(arguments.look);
     options.capture = arguments.capture.capture;
-    options.open_sequence = [capture = arguments.capture, profiles = options.profiles](
-                                const std::string& name) { return open_sequence(capture, name, profiles); };
+    options.open_sequence = [capture = arguments.capture,
+                             profiles = options.profiles](const std::string& name) {
+        return open_sequence(options_for(capture, name), profiles);
+    };
     options.limits = arguments.capture.limits;
     options.gl = chosen_gl(arguments.gl);
     options.data_folder = data_path();
@@ -213,10 +218,22 @@ ExitCode draw(serve::ServeOptions& options, bool is_for_thumbnails) {
     return ExitCode::done;
 }
 
+/// The work of a process that exports.
+ExitCode export_frames(const ServeArguments& arguments) {
+    const serve::ExportJob job = read_export_job();
+    RunArguments run;
+    run.capture = options_for(arguments.capture, job.capture);
+    run.gl = arguments.gl;
+    run.effect_paths = arguments.effect_paths;
+    run.plugins = arguments.limits;
+    return run_export(job, std::move(run));
+}
+
 ExitCode serve(const ServeArguments& words) {
     const char* const draws = std::getenv(kDrawsVariable);
     share_one_heap();
     const ServeArguments arguments = completed(words);
+    if (std::getenv(kExportVariable)) return export_frames(arguments);
     Diagnostics diagnostics;
     if (!draws) find_effects(arguments.effect_paths, diagnostics);  // for its faults and warnings
     serve::ServeOptions options = serve_options(arguments, diagnostics);
@@ -230,6 +247,7 @@ ExitCode serve(const ServeArguments& words) {
     };
     options.run_drawer = runner("1");
     options.run_thumbnail_drawer = runner(kThumbnails);
+    options.run_export = export_runner(arguments.limits.pass_limit());
     if (options.look_file == serve::LookModel::File::fresh)
         std::cerr << arguments.look << ": the page makes it when it saves\n";
     std::optional<OpenedBrowser> browser;

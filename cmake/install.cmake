@@ -32,7 +32,7 @@ target_include_directories(aftershade_plugin INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/framework/plugin> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 
 install(TARGETS aftershade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-install(DIRECTORY effects glsl looks page profiles DESTINATION share/aftershade COMPONENT runtime)
+install(DIRECTORY blender effects glsl looks page profiles DESTINATION share/aftershade COMPONENT runtime)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/printed/man1 DESTINATION share/man COMPONENT runtime)
 install(FILES ${PROJECT_BINARY_DIR}/printed/completions/aftershade DESTINATION share/bash-completion/completions
         COMPONENT runtime)

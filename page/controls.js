@@ -8,6 +8,7 @@ import { profileControl } from "./profile.js";
 import { isPixelSource, rackControl, sourceControl } from "./source.js";
 import * as values from "./values.js";
 import { variableControl } from "./variables.js";
+import { wheel } from "./wheel.js";
 
 function boolControl({ label, describedBy, commit }) {
   const box = element("input", { type: "checkbox", "aria-label": label, "aria-describedby": describedBy });
@@ -61,12 +62,37 @@ function vectorControl({ label, parameter, describedBy, commit }) {
   const swatch =
     isColor && element("input", { type: "color", "aria-label": `${label}, swatch`, "aria-describedby": describedBy });
   if (swatch) swatch.addEventListener("input", () => commit(values.lightOf(swatch.value), `swatch ${label}`));
+  const [low, high] = parameter.ui ?? [0, 1],
+    disc =
+      isColor &&
+      wheel({
+        label,
+        reach: (high - low) / 4, // a grade shifts little
+        change(numbers, gesture) {
+          const inside = numbers.map((number) =>
+            Number(Math.min(Math.max(number, parameter.min ?? -Infinity), parameter.max ?? Infinity).toPrecision(4)),
+          );
+          disc.show(inside);
+          inside.forEach((number, i) => fields[i].show(values.short(number)));
+          commit(inside, gesture);
+        },
+      });
   return {
-    nodes: [element("span", { class: "wide vector" }, swatch || null, ...fields.map(({ node }) => node))],
+    isTall: isColor,
+    nodes: [
+      element(
+        "span",
+        { class: "wide vector" },
+        disc ? disc.node : null,
+        swatch || null,
+        fields.map(({ node }) => node),
+      ),
+    ],
     update(next) {
       entry = next;
       const numbers = list(next.effective).map((one) => values.numberOf(one, parameter.unit));
       numbers.forEach((number, i) => fields[i].show(values.short(number)));
+      if (disc && numbers.every(Number.isFinite)) disc.show(numbers);
       if (swatch) swatch.value = values.swatchOf(numbers);
     },
   };

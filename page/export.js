@@ -1,5 +1,5 @@
-// Files for other people: a still, a sheet of frames, the look.
-import { pictureBlob } from "./api.js";
+// Files for other people: all frames as images or a video, a still, a sheet of frames, the look.
+import { get, pictureBlob, post } from "./api.js";
 import { button, element, notify } from "./elements.js";
 
 export const MOST_FRAMES = 24; // of a contact sheet
@@ -23,6 +23,111 @@ export function spread(frames, count) {
   return Array.from({ length: count }, (_, i) => frames[Math.round((i * (frames.length - 1)) / (count - 1))]);
 }
 
+const FORMATS = [
+    ["mp4", "MP4 video, H.264"],
+    ["mov", "MOV video, ProRes 422 HQ"],
+    ["png", "PNG images, 8 bits, for display"],
+    ["exr", "EXR images, scene-linear"],
+  ],
+  POLL_MS = 300;
+
+/** All frames, which the program writes to the look's folder: whole, or not at all. */
+class FramesForm {
+  #watching = false;
+
+  constructor(store) {
+    this.store = store;
+    this.name = element("input", {
+      type: "text",
+      class: "field text",
+      "aria-label": "Name of the export",
+      "aria-describedby": "export-where",
+      autocomplete: "off",
+      spellcheck: "false",
+    });
+    this.format = element(
+      "select",
+      { "aria-label": "Format" },
+      FORMATS.map(([value, words]) => element("option", { value }, words)),
+    );
+    this.start = element("button", { type: "submit", class: "save" }, "Export frames");
+    this.cancel = button("Cancel", () => post("/api/export/cancel").catch((error) => this.#fail(error.message)), {
+      hidden: true,
+    });
+    this.where = element("p", { id: "export-where" });
+    this.bar = element("progress", { "aria-label": "Exported frames", hidden: true });
+    this.words = element("p", { role: "status" });
+    this.refusal = element("p", { class: "refusal", role: "alert" });
+    this.node = element(
+      "form",
+      { class: "export-frames" },
+      element("div", { class: "line" }, this.name, this.format, this.start, this.cancel),
+      this.where,
+      this.bar,
+      this.words,
+      this.refusal,
+    );
+    this.node.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.#start();
+    });
+  }
+
+  open(name) {
+    const { look, capture, read_only } = this.store.state,
+      count = capture.frames.length;
+    if (!this.#watching) this.name.value = name;
+    this.where.textContent = read_only
+      ? "The program was started with --read-only: it writes no frames."
+      : `${count} ${count === 1 ? "frame" : "frames"} at full size, into ${look.folder}. Images get a folder of this name.`;
+    this.start.disabled = read_only;
+    this.#watch();
+  }
+
+  #fail(words) {
+    this.words.textContent = "";
+    this.refusal.textContent = words;
+  }
+
+  async #start() {
+    this.refusal.textContent = this.words.textContent = "";
+    const name = this.name.value.trim();
+    if (!name) return this.#fail("Type a name");
+    try {
+      await post("/api/export/start", { name, format: this.format.value });
+      await this.#watch();
+    } catch (error) {
+      this.#fail(error.message);
+    }
+  }
+
+  /** Shows how far the export is until it ends, also one that was started before the page was loaded. */
+  async #watch() {
+    if (this.#watching) return;
+    this.#watching = true;
+    try {
+      for (let wasRunning = false; ; await new Promise((done) => setTimeout(done, POLL_MS))) {
+        const { runs, name, done, frames, written, fault } = await get("/api/export");
+        this.start.hidden = runs;
+        this.cancel.hidden = this.bar.hidden = !runs;
+        if (!runs) {
+          if (wasRunning && fault) this.#fail(`${name}: ${fault}`);
+          else if (wasRunning) this.words.textContent = `Wrote ${written}`;
+          break;
+        }
+        if (!wasRunning) this.cancel.focus();
+        wasRunning = true;
+        this.bar.max = frames;
+        this.bar.value = done;
+        this.words.textContent = `${name}: frame ${Math.min(done + 1, frames)} of ${frames}`;
+      }
+    } catch (error) {
+      this.#fail(error.message);
+    }
+    this.#watching = false;
+  }
+}
+
 export class ExportDialog {
   constructor(store, viewer) {
     this.store = store;
@@ -33,6 +138,7 @@ export class ExportDialog {
       return element("div", { class: "choice" }, run, element("p", {}, doc));
     };
     this.sheetDoc = element("span");
+    this.all = new FramesForm(store);
     this.node = element(
       "dialog",
       { class: "export", "aria-label": "Export" },
@@ -42,6 +148,7 @@ export class ExportDialog {
         element("h2", {}, "Export"),
         button("Close", () => this.node.close()),
       ),
+      this.all.node,
       element(
         "div",
         { class: "choices" },
@@ -58,6 +165,7 @@ export class ExportDialog {
     const { length } = this.frames;
     this.words.textContent = "";
     this.sheetDoc.textContent = `${length} ${length === 1 ? "frame" : "frames"} of ${this.store.state.capture.frames.length} with their numbers, as PNG.`;
+    this.all.open(this.name);
     this.node.showModal();
   }
 

@@ -38,14 +38,24 @@ export class Gallery {
     try {
       const looks = await get("/api/starts", { frame: this.viewer.frame });
       this.list.replaceChildren(...looks.filter(({ text }) => text).map((look) => this.#item(look)));
-      const needs = looks.filter(({ needs }) => needs).map(({ name, needs }) => `${words(name)} needs ${needs}`);
-      this.others.textContent = needs.length ? `${needs.join("; ")}: the capture has no such role.` : "";
-      this.others.hidden = !needs.length;
+      this.#showNeeds(looks.filter(({ needs }) => needs));
       this.#wantAll();
     } catch (error) {
       this.#shown = "";
       this.others.textContent = error.message;
     }
+  }
+
+  /** The looks that lack roles, and how the producer writes each of these. */
+  #showNeeds(looks) {
+    const roles = (needs) => needs.map(({ role }) => role).join(" and "),
+      sentences = looks.map(({ name, needs }) => `${words(name)} needs ${roles(needs)}`),
+      remedies = new Map(looks.flatMap(({ needs }) => needs.map(({ role, remedy }) => [role, remedy])));
+    this.others.hidden = !looks.length;
+    this.others.replaceChildren(
+      `${sentences.join("; ")}: the capture has no such role. `,
+      ...[...remedies].filter(([, remedy]) => remedy).map(([role, remedy]) => `For ${role}: ${remedy}. `),
+    );
   }
 
   #wantAll() {

@@ -3,6 +3,7 @@ import { element } from "./elements.js";
 import { literal, numberOf, quantity, scaleOf, short, typedNumber } from "./values.js";
 
 const PLACES = 1000; // of a slider
+const SCRUB_PX = 300; // of a drag on the number, for the slider's whole range
 const REST_MS = 200; // after which a slider counts as let go, where each value costs a compilation
 
 /**
@@ -61,6 +62,34 @@ export function field({ label, parse, commit, describedBy, className = "field", 
     input.title = text;
   };
   return { node: input, show };
+}
+
+/** Dragging sideways on a number changes it; a press without a drag goes into the text. */
+function scrubbed(input, { begin, move, end }) {
+  input.classList.add("scrub-number");
+  input.addEventListener("pointerdown", (event) => {
+    // Where the text is edited, a drag selects; a finger scrolls.
+    if (document.activeElement === input || event.pointerType === "touch" || event.button !== 0) return;
+    event.preventDefault();
+    input.setPointerCapture(event.pointerId);
+    let begun = null;
+    const drag = ({ clientX }) => {
+      const px = clientX - event.clientX;
+      if (begun === null && Math.abs(px) < 3) return;
+      begun ??= begin();
+      if (Number.isFinite(begun)) move(begun, px);
+    };
+    input.addEventListener("pointermove", drag);
+    input.addEventListener(
+      "lostpointercapture",
+      () => {
+        input.removeEventListener("pointermove", drag);
+        if (begun === null) input.focus();
+        else end();
+      },
+      { once: true },
+    );
+  });
 }
 
 /** {nodes: [slider, field, unit], update(entry)} of a float, int or angle. */
@@ -140,6 +169,29 @@ export function numberControl({ label, parameter, describedBy, commit }) {
     onArrow: (sign, times) => nudge(sign * times),
   });
   const unit = element("span", { class: "unit" }, parameter.unit ?? "");
+  scrubbed(typed.node, {
+    begin() {
+      isDragged = true;
+      gesture = `${label} ${performance.now()}`;
+      return numberOf(entry.effective ?? parameter.default, parameter.unit);
+    },
+    move(begun, px) {
+      const isInside = begun >= scale.low && begun <= scale.high,
+        wanted = isInside
+          ? scale.value(Math.min(Math.max(scale.place(begun) + px / SCRUB_PX, 0), 1))
+          : begun + (px * (scale.high - scale.low)) / SCRUB_PX,
+        number = Math.min(Math.max(wanted, parameter.min ?? -Infinity), parameter.max ?? Infinity),
+        next = parameter.type === "int" ? Math.round(number) : Number(number.toPrecision(6));
+      paint(next);
+      typed.show(short(next, 6));
+      if (next !== entry.effective) send(next, true);
+    },
+    end() {
+      isDragged = false;
+      clearTimeout(waiting?.timer);
+      waiting?.now();
+    },
+  });
 
   return {
     nodes: [slider, typed.node, unit],

@@ -2,6 +2,7 @@
 import { AddDialog } from "./add_dialog.js";
 import { get, token } from "./api.js";
 import { Costs, Histogram, Probe } from "./dock.js";
+import { addDivider } from "./divider.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
 import { acceptDrops } from "./drop.js";
 import { ExportDialog } from "./export.js";
@@ -130,12 +131,14 @@ const EXPLAIN = "Point at a value to read what it does, its limits and where it 
 const help = element("p", { class: "explain", "aria-hidden": "true" }, EXPLAIN);
 at("look").append(tablist, faults.node, list.node, text.node, shaders.node, help);
 showPanel("steps");
-// What the row under the pointer or with the focus is for.
-for (const name of ["focusin", "pointerover"])
-  at("look").addEventListener(
-    name,
-    ({ target }) => (help.textContent = target.closest(".row")?.querySelector(".hint")?.textContent ?? EXPLAIN),
-  );
+// What the row with the focus is for; where none has it, the row under the pointer.
+const rowOf = (node) => (at("look").contains(node) ? node.closest(".row") : null);
+for (const name of ["focusin", "focusout", "pointerover", "pointerleave"])
+  at("look").addEventListener(name, ({ type, target }) => {
+    const row = (type === "focusin" && rowOf(target)) || rowOf(document.activeElement) || rowOf(target);
+    help.textContent = row?.querySelector(".hint")?.textContent ?? EXPLAIN;
+  });
+addDivider(at("work"), at("look"));
 
 // ---- the bar ----
 
@@ -173,6 +176,7 @@ function nextPanel() {
 async function save() {
   if (shaders.node.contains(document.activeElement)) return shaders.save();
   if (store.state.read_only) return notify("The program was started with --read-only", true);
+  if (store.hasFaults && !(await saving.confirm())) return;
   const isSaved = store.state.look.has_name ? await store.save() : await saving.open();
   if (isSaved) notify(`Saved ${store.state.look.name}`);
 }
@@ -208,7 +212,7 @@ const shortcuts = new Shortcuts([
   { group: "Look", keys: ["Ctrl+Z"], words: "Undo", run: () => store.undo(), inText: "edited" },
   { group: "Look", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], words: "Redo", run: () => store.redo(), inText: "edited" },
   { group: "Look", keys: ["T"], words: "Steps, text or shaders", run: nextPanel },
-  { group: "Look", keys: ["X"], words: "Export a still, a contact sheet or the look", run: () => exporting.open() },
+  { group: "Look", keys: ["X"], words: "Export images, a video, a still, a contact sheet or the look", run: () => exporting.open() },
   { group: "Look", keys: ["Ctrl+Shift+C"], words: "Copy the command", run: copyCommand, inText: true },
   { group: "Steps", keys: ["A"], words: "Add a step", run: openAdd },
   { group: "Steps", keys: ["S"], words: "Go to the steps", run: () => (showPanel("steps"), list.focus(0)) },
@@ -220,7 +224,7 @@ const shortcuts = new Shortcuts([
   { group: "Values", keys: ["←", "→"], words: "Move the slider by a hundredth of its range" },
   { group: "Values", keys: ["Page Up", "Page Down"], words: "Move the slider by a tenth of its range" },
   { group: "Values", keys: ["↑", "↓"], words: "Change the number by a hundredth of the range; with Shift by a tenth" },
-  { group: "Values", keys: ["Enter"], words: "Apply the typed value; it may have a unit: 85 mm" },
+  { group: "Values", keys: ["Enter"], words: "Apply the typed value; it may have a unit or be a sum: 85 mm, 6+0.4" },
   { group: "Values", keys: ["Escape"], words: "Undo typing" },
   { group: "Curves", keys: ["←", "→"], words: "Move the key by a frame; with Shift by 10 frames" },
   { group: "Curves", keys: ["↑", "↓"], words: "Move the key by a hundredth of the slider's range; with Shift by a tenth" },

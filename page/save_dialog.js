@@ -1,5 +1,5 @@
 // Asks for the name of a look that has none, and saves it.
-import { button, element } from "./elements.js";
+import { button, element, freshId } from "./elements.js";
 
 export class SaveDialog {
   constructor(store) {
@@ -45,6 +45,44 @@ export class SaveDialog {
     this.name.focus();
     return new Promise((resolve) =>
       this.node.addEventListener("close", () => resolve(this.store.state.look.has_file), { once: true }),
+    );
+  }
+
+  /** Asks whether a look with faults is to be saved. Resolves to the answer. */
+  confirm() {
+    const count = this.store.state.faults.filter(({ severity }) => severity !== "warning").length,
+      heading = freshId("faulty");
+    const node = element(
+      "dialog",
+      { class: "save-dialog", "aria-labelledby": heading },
+      element(
+        "form",
+        { method: "dialog" },
+        element(
+          "div",
+          { class: "help-head" },
+          element("h2", { id: heading }, count === 1 ? "The look has a fault" : `The look has ${count} faults`),
+        ),
+        element("p", { class: "empty" }, "`aftershade run` refuses it until they are mended. Save it all the same?"),
+        element(
+          "div",
+          { class: "save-foot" },
+          element("button", { value: "", autofocus: true }, "Cancel"),
+          element("button", { value: "save" }, "Save with faults"),
+        ),
+      ),
+    );
+    document.body.append(node);
+    node.showModal();
+    return new Promise((resolve) =>
+      node.addEventListener(
+        "close",
+        () => {
+          node.remove();
+          resolve(node.returnValue === "save");
+        },
+        { once: true },
+      ),
     );
   }
 

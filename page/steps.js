@@ -18,6 +18,39 @@ const MIX = {
 /** A step that includes another look has no effect, but its file. */
 export const nameOf = (step) => step.name || step.effect || (step.use ? `use ${step.use}` : `step ${step.index + 1}`);
 
+/** Places of rows: those without a section first, then each section under its heading, the advanced ones in a fold. */
+class Sections {
+  #nodes = new Map();
+
+  constructor(body, params) {
+    this.params = params;
+    this.first = element("div");
+    this.advanced = element("details", { class: "advanced", hidden: true }, element("summary", {}, "Advanced"));
+    body.append(this.first, this.advanced);
+  }
+
+  add(id, { section = "", advanced = false }, row) {
+    if (advanced) {
+      this.advanced.hidden = false;
+      this.advanced.append(row);
+      if (this.params[id]?.value !== undefined) this.advanced.open = true; // the look has a word on it
+    } else if (!section) this.first.append(row);
+    else {
+      if (!this.#nodes.has(section)) {
+        const heading = freshId("section"),
+          node = element(
+            "div",
+            { class: "section", role: "group", "aria-labelledby": heading },
+            element("p", { id: heading, class: "section-name" }, section),
+          );
+        this.#nodes.set(section, node);
+        this.advanced.before(node);
+      }
+      this.#nodes.get(section).append(row);
+    }
+  }
+}
+
 class StepCard {
   constructor(list, step, key) {
     this.list = list;
@@ -115,6 +148,7 @@ class StepCard {
       this.mix.node,
       this.mask.node,
     );
+    const sections = new Sections(this.body, this.step.params);
     for (const [id, parameter] of Object.entries(this.effect?.params ?? {})) {
       const row = parameterRow({
         id,
@@ -128,7 +162,7 @@ class StepCard {
       });
       row.node.dataset.param = id;
       this.rows.set(id, row);
-      this.body.append(row.node);
+      sections.add(id, parameter, row.node);
     }
   }
 

@@ -1,4 +1,5 @@
 // Values of parameters as text and back.
+import { sum } from "./sum.js";
 
 /** At most `digits` significant digits, without trailing zeros. */
 export function short(number, digits = 4) {
@@ -31,10 +32,11 @@ export function literal(number, parameter, old) {
 
 /** {value} of what a person typed for a number, or {error}. A unit other than the declared one is left to the program. */
 export function typedNumber(text, parameter, old) {
-  const found = quantity(text.replace(",", "."));
+  const point = text.replaceAll(",", "."),
+    found = quantity(point) ?? sum(point);
   if (!found)
     return {
-      error: `${text || "nothing"} is not a number${parameter.unit ? `; examples: 2.5, 2.5 ${parameter.unit}` : ""}`,
+      error: `${text || "nothing"} is not a number${parameter.unit ? `; examples: 2.5, 2.5 ${parameter.unit}, 2+0.5` : ""}`,
     };
   if (found.unit && found.unit !== parameter.unit) return { value: `${found.number} ${found.unit}` };
   const range = outOfRange(found.number, parameter);

@@ -166,6 +166,7 @@ CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
     for (const ExrChannel& channel : part.channels) header.channels.push_back(channel.name);
     open.profile = &choose_profile(part, header);
     header.profile = open.profile->id;
+    header.remedies = open.profile->remedies;
     choose_layer(open);
     header.camera = sequence_.camera;
     header.camera.complete_from(camera_of_metadata(part, *open.profile, sequence_.camera));

@@ -54,6 +54,7 @@ struct CaptureHeader {
     std::map<std::string, std::vector<std::string>> other_channels;
     /// Roles that the main file does not store as they are: from files of their own, luminance, Cryptomatte.
     std::set<std::string> derived_roles;
+    std::map<std::string, std::string> remedies;  ///< of the profile: settings that write a role
     /// By role that cannot be read: what is there of it, and what is missing, in whole sentences.
     std::map<std::string, std::string> half_there;
     std::vector<std::string> channels;   ///< of the file, in this view

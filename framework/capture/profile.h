@@ -101,9 +101,10 @@ struct Profile {
     std::string color_space = "auto";  ///< of the stored colours; auto: what the header says, else Rec. 709
     std::string lens_model;            ///< "thin" or "pinhole"; "" where not known
     std::map<std::string, RoleDecoding> roles;
-    std::map<std::string, CameraSource> camera;  ///< by camera field
-    std::optional<CameraSource> field_of_view;   ///< across the picture's width
-    std::vector<std::string> seen_on;            ///< real files, below the folder of captures for tests
+    std::map<std::string, std::string> remedies;  ///< by role: settings of the producer that write it
+    std::map<std::string, CameraSource> camera;   ///< by camera field
+    std::optional<CameraSource> field_of_view;    ///< across the picture's width
+    std::vector<std::string> seen_on;             ///< real files, below the folder of captures for tests
     std::vector<ProfileFact> facts;
 };
 

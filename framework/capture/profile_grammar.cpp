@@ -6,6 +6,7 @@
 #include "framework/document/units.h"
 #include "framework/image/camera.h"
 #include "framework/image/image_forms.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -70,6 +71,13 @@ Form camera_sources() {
     return grammar::object(std::move(block));
 }
 
+Form remedies_by_role() {
+    Block block{.name = "", .unknown_key = "'{}' is not a role", .type = "text by role"};
+    for (const ChannelRole& role : channel_roles())
+        block.keys.push_back(optional(role.name, text(), role.meaning));
+    return grammar::object(std::move(block));
+}
+
 Block fact_block() {
     return {.name = "fact",
             .thing = "the fact",
@@ -100,6 +108,9 @@ const Block& profile_block() {
                  optional("lens_model", grammar::choice(lens_model_names()),
                           "Lens model of the producer; default: unknown."),
                  required("roles", decodings(), "How stored channels become images."),
+                 optional("remedies", remedies_by_role(),
+                          "The producer's settings that write a role, for messages about a capture "
+                          "without it: `tick Vector`."),
                  optional("camera", camera_sources(),
                           "Camera values by the header attributes that hold them."),
                  optional(

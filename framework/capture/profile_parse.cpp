@@ -140,6 +140,8 @@ std::optional<Profile> parse_profile(const Node& node, Diagnostics& diagnostics)
     profile.color_space = reader.text("color_space");
     profile.lens_model = reader.text("lens_model");
     if (const Node* roles = reader.find("roles")) profile.roles = read_decodings(*roles);
+    if (const Node* remedies = reader.find("remedies"))
+        for (const Member& member : remedies->members) profile.remedies[member.key] = member.value.string;
     if (const auto camera = reader.object("camera")) read_camera_sources(*camera, profile);
     profile.seen_on = reader.texts("seen_on");
     for (const grammar::Reader& fact : reader.objects("facts"))

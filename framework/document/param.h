@@ -123,7 +123,9 @@ struct ParamSpec {
     std::vector<std::string> values;                ///< enum_
     std::vector<int> numbers;                       ///< enum_: stand for its values, too; or none
     ParamBind bind = ParamBind::uniform;
-    std::string from;  ///< "camera.focus_distance": the default where the capture has that value
+    std::string section;       ///< heading that it stands under, in words; "" for the first ones
+    bool is_advanced = false;  ///< stands last, and folded on the page
+    std::string from;          ///< "camera.focus_distance": the default where the capture has that value
     std::optional<ParamValue> identity;  ///< the value that leaves the image as it is
     std::vector<ParamRelation> relations;
     FileKind file_kind = FileKind::image;  ///< file

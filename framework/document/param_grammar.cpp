@@ -82,8 +82,12 @@ std::vector<Key> range_keys() {
 std::vector<Key> manifest_keys(ParamType type, const ParamSources& sources) {
     std::vector<Key> keys = {
         optional("bind", bind_form(type), "`define`: one program per value used.", "\"uniform\""),
-        optional("identity", grammar::make_form<AnyValue>(type),
-                 "The value that leaves the image as it is.")};
+        optional("identity", grammar::make_form<AnyValue>(type), "The value that leaves the image as it is."),
+        optional(
+            "section", grammar::text({.min_length = 1}),
+            "Heading for parameters that belong together, in words: `Aperture`; default: none, and first."),
+        optional("advanced", grammar::boolean(), "Last and folded away on the page: few looks need it.",
+                 "false")};
     if (is_block_type(type))
         keys.push_back(
             optional("from",

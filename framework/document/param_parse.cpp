@@ -37,6 +37,8 @@ void read_range(const SpecReader& reader, ParamSpec& spec) {
 /// What only a parameter of a manifest has, not a column of a table.
 void read_manifest_keys(const Node& node, ParamSpec& spec) {
     spec.from = text_of(node, "from");
+    spec.section = text_of(node, "section");
+    if (const Node* advanced = node.find("advanced")) spec.is_advanced = advanced->boolean;
     if (text_of(node, "bind") == "define") spec.bind = ParamBind::define;
     if (const Node* relations = node.find("requires"))
         for (const Node& item : relations->items)

@@ -23,6 +23,8 @@ json param_json(const ParamSpec& spec) {
     if (spec.ui_range) entry["ui"] = *spec.ui_range;
     if (spec.identity) entry["identity"] = value_json(spec, *spec.identity);
     if (!spec.from.empty()) entry["from"] = spec.from;
+    if (!spec.section.empty()) entry["section"] = spec.section;
+    if (spec.is_advanced) entry["advanced"] = true;
     if (is_block_type(spec.type)) entry["bind"] = spec.bind == ParamBind::define ? "define" : "uniform";
     if (spec.type->describe) entry.update(spec.type->describe(spec));
     if (!spec.type->has_columns) return entry;

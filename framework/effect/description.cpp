@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "framework/base/option.h"
 #include "framework/document/param_type.h"
@@ -154,16 +155,40 @@ std::string preset_text(const EffectManifest& manifest, const PresetSpec& preset
     return text.empty() ? "the defaults" : text;
 }
 
+struct ParamSection {
+    std::string title;  ///< "" of the first
+    std::vector<const ParamSpec*> params;
+};
+
+/// As the page shows them: without a section first, then by section, and the advanced ones last.
+std::vector<ParamSection> sections_of(const EffectManifest& manifest) {
+    std::vector<ParamSection> sections(1);
+    ParamSection advanced{"Advanced", {}};
+    for (const ParamSpec& spec : manifest.params) {
+        auto found = std::ranges::find(sections, spec.section, &ParamSection::title);
+        if (!spec.is_advanced && found == sections.end()) found = sections.insert(found, {spec.section, {}});
+        (spec.is_advanced ? advanced : *found).params.push_back(&spec);
+    }
+    sections.push_back(std::move(advanced));
+    std::erase_if(sections, [](const ParamSection& section) { return section.params.empty(); });
+    return sections;
+}
+
 void markdown_params(const EffectManifest& manifest, std::ostream& out) {
     if (manifest.params.empty()) return;
-    out << "\n## Parameters\n\n| name | type | default | range | |\n|---|---|---|---|---|\n";
-    for (const ParamSpec& spec : manifest.params) {
-        out << "| `" << spec.name << "` | " << cell(type_text(spec)) << " | " << cell(default_text(spec))
-            << " | " << range_text(spec) << " | " << cell(spec.doc) << " |\n";
-        for (const ParamSpec& column : spec.columns)
-            out << "| `" << spec.name << "` &rarr; `" << column.name << "` | " << cell(type_text(column))
-                << " | " << cell(default_text(column)) << " | " << range_text(column) << " | "
-                << cell(column.doc) << " |\n";
+    out << "\n## Parameters\n";
+    for (const ParamSection& section : sections_of(manifest)) {
+        out << (section.title.empty() ? "" : "\n**" + section.title + "**\n")
+            << "\n| name | type | default | range | |\n|---|---|---|---|---|\n";
+        for (const ParamSpec* spec : section.params) {
+            out << "| `" << spec->name << "` | " << cell(type_text(*spec)) << " | "
+                << cell(default_text(*spec)) << " | " << range_text(*spec) << " | " << cell(spec->doc)
+                << " |\n";
+            for (const ParamSpec& column : spec->columns)
+                out << "| `" << spec->name << "` &rarr; `" << column.name << "` | " << cell(type_text(column))
+                    << " | " << cell(default_text(column)) << " | " << range_text(column) << " | "
+                    << cell(column.doc) << " |\n";
+        }
     }
 }
 
@@ -212,15 +237,17 @@ std::string describe_text(const EffectManifest& manifest, bool verbose) {
     out << manifest.id << " " << manifest.version << "\n" << manifest.summary << "\n";
     if (!manifest.group.empty())
         out << "group: " << manifest.group << (manifest.is_recommended ? ", recommended" : "") << "\n";
-    if (!manifest.params.empty()) out << "\nparameters\n";
-    TextTable params("  ");
-    for (const ParamSpec& spec : manifest.params) {
-        params.add({spec.name, type_text(spec), default_text(spec), range_text(spec), spec.doc});
-        for (const ParamSpec& column : spec.columns)
-            params.add({"  " + column.name, type_text(column), default_text(column), range_text(column),
-                        column.doc});
+    for (const ParamSection& section : sections_of(manifest)) {
+        out << "\nparameters" << (section.title.empty() ? "" : ": " + section.title) << "\n";
+        TextTable params("  ");
+        for (const ParamSpec* spec : section.params) {
+            params.add({spec->name, type_text(*spec), default_text(*spec), range_text(*spec), spec->doc});
+            for (const ParamSpec& column : spec->columns)
+                params.add({"  " + column.name, type_text(column), default_text(column), range_text(column),
+                            column.doc});
+        }
+        params.print(out);
     }
-    params.print(out);
     if (!manifest.presets.empty()) out << "\npresets\n";
     TextTable presets("  ");
     for (const PresetSpec& preset : manifest.presets)

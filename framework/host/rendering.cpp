@@ -37,14 +37,15 @@ void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture)
         require_capture_roles(pipeline, capture.header);
         return;
     }
-    const auto missing = find_missing_role(pipeline, capture.header);
-    if (!missing) return;
+    std::vector<std::string> needs;
+    for (const MissingRole& missing : find_missing_roles(pipeline, capture.header))
+        needs.push_back(need_of(missing));
+    if (needs.empty()) return;
     const auto& roles = capture.header.roles;
     fail_at(ErrorKind::capture, "capture",
-            missing->who + " needs the role '" + missing->role +
-                (missing->instead.empty() ? "" : "' or '" + missing->instead) + "'; the capture has " +
+            joined(needs, " and ") + "; the capture has " +
                 (roles.empty() ? "no images" : list_of_names(roles, "and")) +
-                " (add it by set_image or set_texture)");
+                (needs.size() == 1 ? " (add it" : " (add them") + " by set_image or set_texture)");
 }
 
 void require_same_window(const Capture::Data& capture, const Capture::Data* other, const char* option) {

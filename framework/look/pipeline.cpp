@@ -175,8 +175,13 @@ const ParamSpec& mix_spec() {
     return spec;
 }
 
-std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const CaptureHeader& header) {
+std::vector<MissingRole> find_missing_roles(const Pipeline& pipeline, const CaptureHeader& header) {
     const std::vector<std::string>& roles = header.roles;
+    std::vector<MissingRole> missing;
+    const auto add = [&](const std::string& who, const std::string& role, const std::string& instead = "") {
+        if (std::ranges::find(missing, role, &MissingRole::role) == missing.end())
+            missing.push_back({who, role, instead});
+    };
     for (const PipelineStep& step : pipeline.steps) {
         const auto is_there = [&](const InputSource& source) {
             return source.step >= 0 || contains(roles, source.output) ||
@@ -187,20 +192,18 @@ std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const Cap
             const bool is_needed =
                 input.instead.empty() ? !input.optional : !is_there(step.inputs.at(input.instead));
             if (is_needed && !is_there(source))
-                return MissingRole{"step '" + step.name + "' (effect " + step.manifest->id + ")",
-                                   source.output,
-                                   input.instead.empty() ? "" : step.inputs.at(input.instead).output};
+                add("step '" + step.name + "' (effect " + step.manifest->id + ")", source.output,
+                    input.instead.empty() ? "" : step.inputs.at(input.instead).output);
         }
         for (const auto& [output, source] : step.before)
             if (source.step < 0 && !contains(roles, source.output))
-                return MissingRole{"the mix of step '" + step.name + "'", source.output};
+                add("the mix of step '" + step.name + "'", source.output);
         for (const std::string& role : host_roles(step))
             if (!contains(roles, role) && !is_coverage_role(role))
-                return MissingRole{"a value or the mask of step '" + step.name + "'", role};
+                add("a value or the mask of step '" + step.name + "'", role);
     }
-    if (!contains(roles, kColorRole) && !pipeline.writes_role(kDisplayRole))
-        return MissingRole{"the output", kColorRole};
-    return std::nullopt;
+    if (!contains(roles, kColorRole) && !pipeline.writes_role(kDisplayRole)) add("the output", kColorRole);
+    return missing;
 }
 
 std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline) {
@@ -225,6 +228,7 @@ namespace {
 /// own; ..."
 std::string remedies(const std::string& role, const CaptureHeader& header, const CaptureReader* reader) {
     std::string text;
+    if (const auto own = header.remedies.find(role); own != header.remedies.end()) text += own->second + "; ";
     if (reader) {
         const RoleElsewhere found = reader->find_elsewhere(header, role);
         if (!found.profiles.empty())
@@ -244,25 +248,42 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
             text += list_of_names(motion, "and") + (motion.size() == 1 ? " looks" : " look") +
                     " like motion, whose unit, direction and sign no name says, so it is read only as "
                     "declared; ";
-    return text + advice("", Option::role, role + "=FILE", " reads it from a file of its own; ") +
+    return text;
+}
+
+/// Of any role: a file of its own, or the names of its channels.
+std::string general_remedies(const std::string& role) {
+    return advice("", Option::role, role + "=FILE", " reads it from a file of its own; ") +
            "\"channels\": {\"" + role + "\": {\"channels\": [...]}} in capture.json names its channels";
 }
 
 }  // namespace
 
-Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader) {
+std::string need_of(const MissingRole& missing) {
+    return missing.who + " needs the role '" + missing.role +
+           (missing.instead.empty() ? "" : "' or '" + missing.instead) + "'";
+}
+
+Error missing_roles(const std::vector<MissingRole>& missing, const CaptureHeader& header,
+                    const CaptureReader* reader) {
+    std::vector<std::string> needs;
+    std::string ways;
+    for (const MissingRole& one : missing) {
+        needs.push_back(need_of(one));
+        const std::string own = remedies(one.role, header, reader);
+        ways += missing.size() == 1 || own.empty() ? own : "for '" + one.role + "': " + own;
+    }
     return Error(ErrorKind::capture,
-                 header.path.string() + ": " + missing.who + " needs the role '" + missing.role +
-                     (missing.instead.empty() ? "" : "' or '" + missing.instead) + "', which the profile '" +
+                 header.path.string() + ": " + joined(needs, " and ") + ", which the profile '" +
                      header.profile + "' does not find among the channels " + list_channels(header.channels) +
-                     (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") + " (" +
-                     remedies(missing.role, header, reader) + ")");
+                     (header.layer.empty() ? "" : ", in the layer '" + header.layer + "'") + " (" + ways +
+                     general_remedies(missing.size() == 1 ? missing[0].role : "ROLE") + ")");
 }
 
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
                            const CaptureReader* reader) {
-    if (const auto missing = find_missing_role(pipeline, header))
-        throw missing_role(*missing, header, reader);
+    if (const auto missing = find_missing_roles(pipeline, header); !missing.empty())
+        throw missing_roles(missing, header, reader);
 }
 
 namespace {

@@ -139,10 +139,15 @@ struct MissingRole {
     std::string role;
     std::string instead{};  ///< another that would do
 };
-std::optional<MissingRole> find_missing_role(const Pipeline& pipeline, const CaptureHeader& header);
+/// "step 'blur' (effect blur) needs the role 'velocity' or 'position'"
+std::string need_of(const MissingRole& missing);
 
-/// With the remedies; `reader` may be null.
-Error missing_role(const MissingRole& missing, const CaptureHeader& header, const CaptureReader* reader);
+/// Each role once, for the first that requires it.
+std::vector<MissingRole> find_missing_roles(const Pipeline& pipeline, const CaptureHeader& header);
+
+/// Of one role or more, with the remedies; `reader` may be null.
+Error missing_roles(const std::vector<MissingRole>& missing, const CaptureHeader& header,
+                    const CaptureReader* reader);
 
 /// A step that reads the color of layers behind the picture, and earlier steps that change the picture's
 /// color, which changes no layer.
@@ -152,9 +157,9 @@ struct StaleLayers {
 };
 std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline);
 
-/// Throws Error(ErrorKind::capture) if the capture lacks a role that a step requires, naming the effect, the
-/// role, the channels that the file does have, and what would give the role: other profiles and layers, found
-/// by the reader that the header comes from, where it is given.
+/// Throws Error(ErrorKind::capture) if the capture lacks roles that steps require, naming for each the effect
+/// and what would give the role: the producer's settings, other profiles and layers, found by the reader that
+/// the header comes from, where it is given. It also lists the channels that the file does have.
 void require_capture_roles(const Pipeline& pipeline, const CaptureHeader& header,
                            const CaptureReader* reader = nullptr);
 

@@ -21,10 +21,10 @@ std::vector<StartingLook> find_starting_looks(const std::filesystem::path& folde
         const Pipeline pipeline = bind_pipeline(*look, effects, {}, faults);
         if (faults.has_errors()) continue;
         const Node* summary = document->find("summary");
-        looks.push_back({entry.path(), summary ? summary->string : "", find_missing_role(pipeline, header)});
+        looks.push_back({entry.path(), summary ? summary->string : "", find_missing_roles(pipeline, header)});
     }
     std::ranges::sort(looks, [](const StartingLook& a, const StartingLook& b) {
-        return a.missing.has_value() != b.missing.has_value() ? b.missing.has_value() : a.file < b.file;
+        return a.missing.empty() != b.missing.empty() ? a.missing.empty() : a.file < b.file;
     });
     return looks;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,7 @@ namespace aftershade {
 struct StartingLook {
     std::filesystem::path file;
     std::string summary;
-    std::optional<MissingRole> missing;  ///< of the capture; nullopt: the look fits it
+    std::vector<MissingRole> missing;  ///< of the capture; none: the look fits it
 
     std::string name() const { return file.stem().string(); }
 };

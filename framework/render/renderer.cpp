@@ -131,7 +131,7 @@ bool PipelineRenderer::can_build_ahead() const {
 
 void PipelineRenderer::build_ahead(const FrameInputs& frame, const std::vector<std::string>& roles) {
     // Of a role that is missing, rendering says what to do.
-    if (!can_build_ahead() || find_missing_role(pipeline_, frame.capture->header)) return;
+    if (!can_build_ahead() || !find_missing_roles(pipeline_, frame.capture->header).empty()) return;
     try {
         resolve(frame);
         build(frame, roles, true);

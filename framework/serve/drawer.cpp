@@ -74,15 +74,20 @@ private:
     std::shared_ptr<const BoundText> bound_;  // the last one
 };
 
-/// [{"name", "summary", "text"}], with "needs" in place of the text where the capture lacks a role.
+/// [{"name", "summary", "text"}], with "needs" in place of the text where the capture lacks roles: for each
+/// its name, and with it the producer's remedy.
 Response starts(const DrawRequest& request, const std::filesystem::path& data, EffectRegistry& effects,
                 PictureMaker& maker) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const StartingLook& look :
-         find_starting_looks(starting_looks_folder(data), effects, maker.header_of(request.frame))) {
+    const CaptureHeader& header = maker.header_of(request.frame);
+    for (const StartingLook& look : find_starting_looks(starting_looks_folder(data), effects, header)) {
         nlohmann::ordered_json entry = {{"name", look.name()}, {"summary", look.summary}};
-        if (look.missing) entry["needs"] = look.missing->role;
-        else
+        for (const MissingRole& missing : look.missing) {
+            const auto remedy = header.remedies.find(missing.role);
+            entry["needs"].push_back(
+                {{"role", missing.role}, {"remedy", remedy == header.remedies.end() ? "" : remedy->second}});
+        }
+        if (look.missing.empty())
             entry["text"] =
                 maker.focused_on_surface(read_text_file(look.file, ErrorKind::usage), request.frame);
         list.push_back(std::move(entry));

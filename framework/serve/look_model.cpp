@@ -12,6 +12,7 @@
 #include "framework/base/option.h"
 #include "framework/base/path_bounds.h"
 #include "framework/effect/description.h"
+#include "framework/serve/file_name.h"
 #include "framework/serve/look_edits.h"
 #include "framework/serve/look_state.h"
 
@@ -218,32 +219,14 @@ std::filesystem::path LookModel::saved_path() const {
     return path_;
 }
 
-/// Where a look without a name is saved as `name`.
-std::filesystem::path LookModel::named(const std::string& name) const {
-    constexpr std::size_t kLongestName = 200;  // bytes; file systems take 255 with what AtomicFile adds
-    constexpr std::string_view kEnding = ".json";
-    if (name.empty()) throw Refusal{400, "the look has no name yet: save it under one"};
-    const bool has_control = std::ranges::any_of(name, [](unsigned char c) { return c < 32 || c == 127; });
-    if (name.size() > kLongestName || name.front() == '.' || has_control ||
-        name.find('/') != std::string::npos)
-        throw Refusal{400, "'" + name +
-                               "' is not a name for the look: use at most 200 bytes without '/', and no '.' "
-                               "in front"};
-    const std::filesystem::path path =
-        path_.parent_path() / (name.ends_with(kEnding) ? name : name + std::string(kEnding));
-    std::error_code failure;
-    if (std::filesystem::symlink_status(path, failure).type() != std::filesystem::file_type::not_found)
-        throw Refusal{409, path.string() + " is there already; choose another name"};
-    return path;
-}
-
 void LookModel::save(const std::string& name) {
     const std::lock_guard lock(mutex_);
     if (read_only_)
         throw Refusal{403, "the look is not written: the program runs with " + spelled(Option::read_only)};
     if (!name.empty() && file_ != File::unnamed)
         throw Refusal{409, "the look is " + path_.string() + ", and keeps this name"};
-    const std::filesystem::path path = file_ == File::unnamed ? named(name) : path_;
+    const std::filesystem::path path =
+        file_ == File::unnamed ? new_path(path_.parent_path(), name, ".json", "the look") : path_;
     if (!replace_text_file(path, file_ == File::there ? saved_text_ : "", texts_[at_]))
         throw Refusal{409, path.string() + " was changed by another program; nothing was written"};
     path_ = path;
@@ -304,6 +287,11 @@ bool LookModel::has_effect(const std::string& effect) const {
 EffectFiles LookModel::files_of(const std::string& effect) const {
     const std::lock_guard lock(mutex_);
     return effect_files(*effects_, effect, read_only_);
+}
+
+std::filesystem::path LookModel::folder() const {
+    const std::lock_guard lock(mutex_);
+    return path_.parent_path();
 }
 
 nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {

@@ -88,6 +88,8 @@ public:
     /// What the page shows of the look; values are those of the frame `header` stands for.
     nlohmann::ordered_json state(const CaptureHeader& header) const;
     std::string text() const;
+    /// Of the look, with a file or without.
+    std::filesystem::path folder() const;
 
 private:
     struct Binding {
@@ -104,7 +106,6 @@ private:
     void change(std::string text, Binding binding);
 
     std::string with_edits(const nlohmann::ordered_json& edits) const;
-    std::filesystem::path named(const std::string& name) const;
 
     FindEffects find_effects_;
     bool read_only_;

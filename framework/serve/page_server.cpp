@@ -202,6 +202,24 @@ Response PageServer::command() const {
                                                        capture->name, "-o", output})}});
 }
 
+/// Writes the frames of the look as edited.
+Response PageServer::start_export(const Request& request) {
+    const Json body = shallow_json(request.body);
+    for (const char* key : {"name", "format"})
+        if (!body.is_object() || !body.contains(key) || !body[key].is_string())
+            throw Refusal{400, "the body is {\"name\", \"format\"}, both of them a text"};
+    if (setup_.look.is_read_only())
+        throw Refusal{403, "nothing is exported: the program runs with " + spelled(Option::read_only)};
+    const auto look = setup_.look.bound();
+    if (!look || look->revision != setup_.look.revision())
+        throw Refusal{409, "the look has faults; mend them before the export"};
+    const auto capture = setup_.captures.now();
+    setup_.exporter.start({body["name"].get<std::string>(), body["format"].get<std::string>(), look->text,
+                           look->files, setup_.look.folder(), capture->name,
+                           capture->sequence.frames.size()});
+    return json_response(setup_.exporter.state());
+}
+
 /// Has the effects read again where their files are not those that were read.
 void PageServer::follow_effects() {
     const std::lock_guard lock(mutex_);
@@ -287,6 +305,12 @@ void PageServer::answer(const Request& request, const Reply& reply) {
         {"/api/histogram", {"GET", drawn([&] { return request_of(request, DrawRequest::Kind::histogram); })}},
         {"/api/metrics", {"GET", drawn([&] { return metrics(request); })}},
         {"/api/command", {"GET", now([&] { return command(); })}},
+        {"/api/export", {"GET", now([&] { return json_response(setup_.exporter.state()); })}},
+        {"/api/export/start", {"POST", now([&] { return start_export(request); })}},
+        {"/api/export/cancel", {"POST", now([&] {
+                                    setup_.exporter.cancel();
+                                    return json_response(setup_.exporter.state());
+                                })}},
         {"/api/changes", {"GET", now([&] { return changes(); })}},
         {"/api/shaders", {"GET", now([&] { return shaders(request); })}},
         {"/api/shader", {"POST", now([&] { return save_shader(request); })}},

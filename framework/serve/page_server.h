@@ -14,6 +14,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "framework/effect/registry.h"
+#include "framework/serve/exporter.h"
 #include "framework/serve/http_message.h"
 #include "framework/serve/look_model.h"
 #include "framework/serve/picture_queue.h"
@@ -27,6 +28,7 @@ struct PageSetup {
     PictureQueue& pictures;
     PictureQueue& thumbnails;  ///< of a process of its own, so that no picture waits for them
     ServedCaptures& captures;
+    Exporter& exporter;
     std::vector<std::filesystem::path> effect_folders;  ///< those that the user named
 };
 
@@ -51,6 +53,7 @@ private:
     DrawRequest starts(const Request& request) const;
     Response take_capture(const Request& request);
     Response command() const;
+    Response start_export(const Request& request);
     Response changes();
     Response shaders(const Request& request) const;
     Response save_shader(const Request& request);

@@ -5,6 +5,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/serve/connections.h"
+#include "framework/serve/exporter.h"
 #include "framework/serve/guards.h"
 #include "framework/serve/look_model.h"
 #include "framework/serve/page_files.h"
@@ -56,7 +57,8 @@ void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
     PictureQueue thumbnails(options.run_thumbnail_drawer,
                             {[](const DrawRequest&) {}, [](const DrawRequest&, const Undrawable&) {}}, stop,
                             PictureQueue::Start::at_first_use);
-    PageServer server({look, pictures, thumbnails, captures, options.effect_folders});
+    Exporter exporter(options.run_export);
+    PageServer server({look, pictures, thumbnails, captures, exporter, options.effect_folders});
     const std::string token = random_token();
     if (options.ready)
         options.ready("http://127.0.0.1:" + std::to_string(connections.port()) + "/#token=" + token);

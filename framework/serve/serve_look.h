@@ -14,6 +14,7 @@
 #include "framework/file/exr_file.h"
 #include "framework/gpu/context.h"
 #include "framework/serve/drawing_process.h"
+#include "framework/serve/exporter.h"
 #include "framework/serve/look_model.h"
 
 namespace aftershade::serve {
@@ -39,6 +40,7 @@ struct ServeOptions {
     RunDrawer run_drawer;
     /// The same, of one that gets no time that others want.
     RunDrawer run_thumbnail_drawer;
+    RunExport run_export;
 };
 
 /// Those of the options' folders and the shipped ones, read now.

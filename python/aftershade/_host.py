@@ -76,7 +76,7 @@ def effect_of(fields: dict[str, Any]) -> Effect:
 
 
 def shipped_data() -> Path:
-    """$AFTERSHADE_DATA, or the folder of effects, GLSL and profiles inside this package."""
+    """$AFTERSHADE_DATA, or the folder of effects, GLSL, looks and profiles inside this package."""
     return Path(os.environ.get("AFTERSHADE_DATA") or Path(__file__).parent / "data")
 
 

@@ -38,13 +38,16 @@ echo '{ "aftershade": 1, "frames": "1-200", "size": [16, 9], "camera": { "positi
 """,
 }
 
+# A machine without ffmpeg gets one that keeps the frames as they come.
+FFMPEG = """command -v ffmpeg >/dev/null || { printf '#!/bin/sh\\nfor file; do :; done\\ncat >"${file#file:}"\\n' >"$HOME/bin/ffmpeg"
+    chmod +x "$HOME/bin/ffmpeg"; }
+"""
+
 # (page, beginning of a command): what it needs besides.
 BEFORE = {
     ("docs/compare.md", "aftershade compare golden.exr out.exr --json"): "cp golden.exr out.exr\n",
-    # A machine without ffmpeg gets one that keeps the frames as they come.
-    ("docs/batch.md", "aftershade run look.json wheel -o film.mp4"):
-        "command -v ffmpeg >/dev/null || { printf '#!/bin/sh\\nfor file; do :; done\\ncat >\"${file#file:}\"\\n' >\"$HOME/bin/ffmpeg\"\n"
-        '    chmod +x "$HOME/bin/ffmpeg"; }\n',
+    ("README.md", "aftershade run scenes/looks/portrait.json scenes/suzanne/capture.json -o film.mp4"): FFMPEG,
+    ("docs/batch.md", "aftershade run look.json wheel -o film.mp4"): FFMPEG,
     ("docs/golden.md", "aftershade golden comment report"):
         "export URL=https://ci.example PULL_REQUEST=7\n"
         "printf '#!/bin/sh\\ngrep -q \"aftershade golden\" comment.md\\n' >\"$HOME/bin/gh\" && chmod +x \"$HOME/bin/gh\"\n",

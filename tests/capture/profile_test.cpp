@@ -192,6 +192,17 @@ TEST(Profile, NeedsIdSummaryDetectAndRoles) {
                      "doc.json:1:19: error: the profile has no key 'rolls'; did you mean 'roles'?"}));
 }
 
+TEST(Profile, OfBlenderSaysForEachRoleThatItDecodesWhichPassToTick) {
+    const std::vector<Profile> profiles = shipped();
+    const Profile& blender = by_id(profiles, "blender");
+    for (const auto& [role, decoding] : blender.roles)
+        if (role != "color") {
+            EXPECT_TRUE(blender.remedies.contains(role)) << role;
+        }
+    for (const auto& [role, remedy] : blender.remedies)
+        EXPECT_NE(remedy.find(" ticked in View Layer Properties > Passes > "), std::string::npos) << remedy;
+}
+
 TEST(Profile, FolderListsTheFaultsOfAllItsFiles) {
     const test::TemporaryFolder folder;
     test::write_text(folder / "a.json", "{");

@@ -70,7 +70,7 @@ TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
     EXPECT_EQ(keys_of(document),
               (std::set<std::string>{"file", "parts", "pixel", "profile", "layer", "layers", "layer_count",
                                      "color_space", "notes", "warnings", "roles", "depth_kind", "missing",
-                                     "camera", "lights", "cryptomattes"}));
+                                     "remedies", "camera", "lights", "cryptomattes"}));
     EXPECT_TRUE(document["file"].get<std::string>().ends_with("scenes/suzanne/gbuffer_0003.exr"));
     ASSERT_EQ(document["parts"].size(), 1);
     const Json& part = document["parts"][0];
@@ -93,6 +93,8 @@ TEST_F(Inspect, TellsTheSuzanneCaptureAsJson) {
     EXPECT_EQ(document["roles"]["depth"], Json::parse(R"(["ViewLayer.Depth.Z"])"));
     EXPECT_EQ(document["missing"], Json::parse(R"(["specular", "emission", "mask"])"));
     EXPECT_EQ(document["camera"]["focal_length"], 50);
+    EXPECT_EQ(keys_of(document["remedies"]), (std::set<std::string>{"emission"}));
+    EXPECT_NE(document["remedies"]["emission"].get<std::string>().find("Emission ticked"), std::string::npos);
 }
 
 TEST_F(Inspect, TellsAPersonTheSame) {

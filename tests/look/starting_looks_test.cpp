@@ -31,7 +31,7 @@ TEST(StartingLooks, AreTenAtMostAndSoundAndFitACaptureOfDepthAndMotion) {
     EXPECT_EQ(std::ptrdiff_t(looks.size()), files) << "one has faults";
     EXPECT_LE(looks.size(), 10u);
     for (const StartingLook& look : looks) {
-        EXPECT_FALSE(look.missing) << look.name();
+        EXPECT_TRUE(look.missing.empty()) << look.name();
         EXPECT_GT(look.summary.size(), 10u) << look.name();
     }
 }
@@ -40,18 +40,20 @@ TEST(StartingLooks, ThatNeedAnotherRoleComeLastAndNameIt) {
     EffectRegistry effects = shipped();
     const auto looks =
         find_starting_looks(starting_looks_folder(kSource), effects, header_with({"color", "depth"}));
-    const auto fits = [](const StartingLook& look) { return !look.missing; };
+    const auto fits = [](const StartingLook& look) { return look.missing.empty(); };
     EXPECT_TRUE(std::ranges::is_partitioned(looks, fits));
     const auto of = [&](const std::string& name) {
         return *std::ranges::find(looks, name, &StartingLook::name);
     };
     EXPECT_TRUE(fits(of("noir")));
     EXPECT_TRUE(fits(of("portrait")));
-    EXPECT_EQ(of("action").missing.value_or(MissingRole{}).role, "velocity");
+    ASSERT_EQ(of("action").missing.size(), 1u);
+    EXPECT_EQ(of("action").missing[0].role, "velocity");
     const auto of_color =
         find_starting_looks(starting_looks_folder(kSource), effects, header_with({"color"}));
     const auto portrait = std::ranges::find(of_color, std::string("portrait"), &StartingLook::name);
-    EXPECT_EQ(portrait->missing.value_or(MissingRole{}).role, "depth");
+    ASSERT_EQ(portrait->missing.size(), 1u);
+    EXPECT_EQ(portrait->missing[0].role, "depth");
 }
 
 TEST(StartingLooks, LeaveOutWhatIsNoLookAndMayBeAbsent) {

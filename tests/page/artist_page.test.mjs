@@ -6,6 +6,7 @@ import {
   existsSync,
   mkdirSync,
   mkdtempSync,
+  readdirSync,
   readFileSync,
   rmSync,
   statSync,
@@ -464,3 +465,260 @@ for (const [colorScheme, width, height] of [
     },
     { viewport: { width, height }, colorScheme },
   );
+
+// ---- out ----
+
+for (const [colorScheme, width, height] of [
+  ["dark", 1440, 900],
+  ["light", 390, 844],
+])
+  walk(
+    `exports all frames as a video and as images, by keys alone, ${colorScheme}, ${width} px`,
+    async (page, folder) => {
+      await edit(page, { op: "add", at: 0, effect: "view_transform" });
+      const dialog = page.getByRole("dialog", { name: "Export" });
+      await page.keyboard.press("x");
+      const name = dialog.getByLabel("Name of the export");
+      await name.fill("../film");
+      await name.press("Enter");
+      await dialog.getByText("is not a name for the export").waitFor();
+      await axe(page, "export");
+      const hasVideo = spawnSync("ffprobe", ["-version"]).status === 0;
+      for (const [format, file] of [...(hasVideo ? [["mp4", "film.mp4"]] : []), ["png", "film"]]) {
+        await name.fill("film");
+        await dialog.getByLabel("Format").selectOption(format);
+        await name.press("Enter");
+        await dialog.getByText(/: frame [12] of 2/).waitFor();
+        if (format === "png") await shot(page, `exporting_${colorScheme}_${width}`);
+        await dialog.getByText(`Wrote ${join(folder, file)}`, { exact: true }).waitFor();
+      }
+      await shot(page, `exported_${colorScheme}_${width}`);
+      if (hasVideo) {
+        const entries = "stream=codec_name,width,height,nb_frames";
+        const probed = spawnSync("ffprobe", ["-v", "error", "-show_entries", entries, "-of", "csv=p=0", "film.mp4"], {
+          cwd: folder,
+          encoding: "utf8",
+        });
+        assert.equal(probed.stdout.trim(), "h264,480,270,2");
+      }
+      assert.deepEqual(readdirSync(join(folder, "film")), ["film_0003.png", "film_0004.png"]);
+      assert.deepEqual(readdirSync(folder).filter((file) => file.startsWith(".")), []);
+      await name.press("Enter");
+      await dialog.getByText("is there already; choose another name").waitFor();
+      await name.fill("other");
+      await name.press("Enter");
+      await dialog.getByRole("button", { name: "Cancel" }).press("Enter");
+      await dialog.getByText("other: cancelled; nothing was written").waitFor();
+      assert.ok(!existsSync(join(folder, "other")));
+    },
+    { viewport: { width, height }, colorScheme, mayFail: true }, // refusals, which the browser logs as errors
+  );
+
+// ---- hands ----
+
+const typedIn = (row, text) => row.getByRole("textbox").fill(text).then(() => row.getByRole("textbox").press("Enter"));
+
+walk("adds up what is typed, and changes a number by a drag on it", async (page) => {
+  await edit(page, { op: "add", at: 0, effect: "dof" });
+  const row = (await opened(page, "dof")).locator('[data-param="focus_distance"]');
+  for (const [text, wanted] of [
+    ["6+0.4", 6.4],
+    ["(2,5 + 1) * 2", 7],
+    ["6+0.4 m", "6.4 m"],
+  ]) {
+    await typedIn(row, text);
+    await until(page, "focus_distance", wanted);
+  }
+  await typedIn(row, "6+");
+  await row.getByText("6+ is not a number").waitFor();
+  await row.getByRole("textbox").press("Escape");
+  await typedIn(row, "6");
+  await until(page, "focus_distance", "6 m");
+  await page.locator(".opener").first().focus();
+  const box = await row.getByRole("textbox").boundingBox(),
+    [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 30, y, { steps: 6 });
+  await page.mouse.up();
+  // A tenth of the slider, whose ends are a factor of 500 apart.
+  await page.waitForFunction(
+    (wanted) => Math.abs(parseFloat(window.aftershade.store.state.steps[0].params.focus_distance.value) / wanted - 1) < 0.05,
+    6 * 500 ** 0.1,
+  );
+  await page.keyboard.press("Control+z");
+  await until(page, "focus_distance", "6 m"); // the drag was one change
+  await row.getByRole("textbox").click();
+  assert.ok(await row.getByRole("textbox").evaluate((node) => node === document.activeElement));
+});
+
+walk("moves the border of the look by pointer and keys, and keeps its place", async (page) => {
+  const border = page.getByRole("separator", { name: "Width of the look" }),
+    width = () => page.locator("#look").evaluate((node) => Math.round(node.getBoundingClientRect().width)),
+    before = await width(),
+    box = await border.boundingBox();
+  await page.mouse.move(box.x + 4, box.y + 200);
+  await page.mouse.down();
+  await page.mouse.move(box.x - 96, box.y + 200, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await width(), before + 100);
+  await border.press("ArrowLeft");
+  assert.equal(await width(), before + 116);
+  assert.equal(await border.getAttribute("aria-valuenow"), String(before + 116));
+  await axe(page, "border");
+  await page.reload();
+  await drawn(page);
+  assert.equal(await width(), before + 116);
+  await border.dblclick();
+  assert.equal(await width(), before);
+});
+
+walk("explains the value with the focus, not the one under the pointer", async (page) => {
+  await edit(page, { op: "add", at: 0, effect: "dof" });
+  const card = await opened(page, "dof"),
+    help = page.locator(".explain");
+  await card.locator('[data-param="f_number"]').hover();
+  assert.match(await help.innerText(), /^Focal length divided by/);
+  await card.locator('[data-param="focus_distance"]').getByRole("textbox").focus();
+  await card.locator('[data-param="f_number"]').hover();
+  assert.match(await help.innerText(), /^Distance along the view axis/);
+});
+
+walk("asks before a look with faults is saved", async (page, folder) => {
+  await edit(page, { op: "add", at: 0, effect: "vignette" });
+  await edit(page, { op: "set", step: 0, param: "amount", value: 1e9 });
+  const asks = page.getByRole("dialog", { name: "The look has a fault" });
+  await page.keyboard.press("Control+s");
+  await asks.waitFor();
+  await axe(page, "faulty save");
+  await page.keyboard.press("Enter"); // Cancel has the focus
+  await asks.waitFor({ state: "detached" });
+  await page.keyboard.press("Control+s");
+  await asks.getByRole("button", { name: "Save with faults" }).press("Enter");
+  await page.getByRole("dialog", { name: "Save the look" }).getByLabel("Name of the look").fill("faulty");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => window.aftershade.store.state.look.has_file);
+  assert.ok(existsSync(join(folder, "faulty.json")));
+});
+
+walk("shifts a colour by its wheel and keeps the mean", async (page) => {
+  await edit(page, { op: "add", at: 0, effect: "color_grade" });
+  await edit(page, { op: "set", step: 0, param: "slope", value: [1, 1.2, 0.8] });
+  const row = (await opened(page, "color_grade")).locator('[data-param="slope"]'),
+    slope = () => page.evaluate(() => window.aftershade.store.state.steps[0].params.slope.value),
+    box = await row.locator(".wheel").boundingBox(),
+    [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x, y - box.height / 4, { steps: 5 }); // half of the radius towards red
+  await page.mouse.up();
+  await page.waitForFunction(() => window.aftershade.store.state.steps[0].params.slope.value[0] > 1.2);
+  const [red, green, blue] = await slope();
+  assert.ok(Math.abs((red + green + blue) / 3 - 1) < 0.01, [red, green, blue].join());
+  assert.ok(Math.abs(green - blue) < 0.05 && Math.abs(red - 1 + 2 * (green - 1)) < 0.05, [red, green, blue].join());
+  await axe(page, "wheel");
+  await shot(page, "wheel");
+  await page.keyboard.press("Control+z");
+  await until(page, "slope", [1, 1.2, 0.8]); // the drag was one change
+  await row.locator(".wheel").dblclick();
+  await until(page, "slope", [1, 1, 1]);
+});
+
+for (const [colorScheme, width, height] of [
+  ["dark", 1440, 900],
+  ["light", 390, 844],
+])
+  walk(
+    `shows parameters under headings and folds the advanced ones away, ${colorScheme}, ${width} px`,
+    async (page) => {
+      await edit(page, { op: "add", at: 0, effect: "dof" });
+      const card = await opened(page, "dof"),
+        names = (place) => card.locator(place).evaluateAll((rows) => rows.map(({ dataset }) => dataset.param));
+      const { params } = JSON.parse(
+        spawnSync(program, ["describe", "dof", "--json"], { encoding: "utf8" }).stdout,
+      );
+      const wanted = (fits) => Object.keys(params).filter((name) => fits(params[name]));
+      await page.getByRole("group", { name: "Aperture" }).waitFor();
+      assert.deepEqual(
+        await names('[role=group][aria-labelledby]:has(> .section-name:text-is("Aperture")) > .row'),
+        wanted(({ section, advanced }) => section === "Aperture" && !advanced),
+      );
+      const fold = card.locator("details.advanced");
+      assert.deepEqual(
+        await names("details.advanced > .row"),
+        wanted(({ advanced }) => advanced),
+      );
+      assert.ok(!(await fold.evaluate((node) => node.open)));
+      assert.ok(await card.locator('[data-param="focus_distance"]').isVisible());
+      await axe(page, "sections");
+      await card.scrollIntoViewIfNeeded();
+      await shot(page, `sections_${colorScheme}_${width}`);
+      await fold.locator("summary").press("Enter");
+      assert.ok(await card.locator('[data-param="quality"]').isVisible());
+      // A step whose look sets one of them opens the fold by itself.
+      await edit(page, { op: "add", at: 1, effect: "dof" });
+      await edit(page, { op: "set", step: 1, param: "quality", value: "exact" });
+      await page.reload();
+      await drawn(page);
+      await page.locator(".opener").nth(1).click();
+      await page.locator('.step >> nth=1 >> [data-param="quality"]').waitFor();
+    },
+    { viewport: { width, height }, colorScheme },
+  );
+
+// ---- the whole way ----
+
+walkBlender("goes from a frame of Blender to a film by hand, without a line of JSON", async (page, folder) => {
+  // A look to start from, focused on Suzanne by a click and on the cube a frame later.
+  await page.locator(".start", { hasText: "Portrait" }).click();
+  await page.waitForFunction(() => window.aftershade.store.state.steps.length > 1);
+  assert.equal((await steps(page))[0], "dof");
+  const row = (await opened(page, "dof")).locator('[data-param="focus_distance"]');
+  await row.getByRole("button", { name: /^Pick/ }).click();
+  await clickAt(page, ...SUZANNE);
+  await until(page, "focus_distance", { from: "depth", object: "Suzanne" });
+  await row.getByRole("button", { name: /^Key/ }).click();
+  await page.keyboard.press(".");
+  await row.getByRole("button", { name: /^Choose the object/ }).click();
+  await page.keyboard.type("cube");
+  await page.locator("#found-objects .name", { hasText: "Cube" }).first().waitFor();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => Object.keys(window.aftershade.store.state.steps[0].params.focus_distance.value.keys).length === 2);
+  await shot(page, "walk_rack");
+  // A darker frame, but not over Suzanne.
+  const vignette = (await steps(page)).indexOf("vignette");
+  assert.ok(vignette > 0);
+  const card = await opened(page, "vignette");
+  await card.getByLabel("Mask by").selectOption("object");
+  await card.getByRole("button", { name: "Pick the mask's object" }).click();
+  await clickAt(page, ...SUZANNE);
+  await page.waitForFunction((at) => window.aftershade.store.state.steps[at].mask?.object === "Suzanne", vignette);
+  await card.getByLabel("Invert the mask").check();
+  await page.waitForFunction((at) => window.aftershade.store.state.steps[at].mask?.invert === true, vignette);
+  await shot(page, "walk_mask");
+  // Saved, then exported.
+  await page.keyboard.press("Control+s");
+  await page.keyboard.type("shot");
+  await page.keyboard.press("Enter");
+  await page.locator(".save-dialog").waitFor({ state: "hidden" });
+  await page.keyboard.press("x");
+  const dialog = page.getByRole("dialog", { name: "Export" });
+  for (const format of spawnSync("ffprobe", ["-version"]).status === 0 ? ["png", "mp4"] : ["png"]) {
+    await dialog.getByLabel("Format").selectOption(format);
+    await dialog.getByLabel("Name of the export").press("Enter");
+    await dialog.getByText(`Wrote ${join(folder, format === "png" ? "shot" : "shot.mp4")}`, { exact: true }).waitFor();
+  }
+  await axe(page, "walk");
+  // What the page wrote is what `run` draws with the saved look, to the bit.
+  const run = spawnSync(program, ["run", "shot.json", "multi_####.exr", "-o", "own_####.png", "--no-journal"], {
+    cwd: folder,
+    env: environment,
+    encoding: "utf8",
+  });
+  assert.equal(run.status, 0, run.stderr);
+  for (const frame of ["0003", "0004"])
+    assert.ok(
+      readFileSync(join(folder, `shot/shot_${frame}.png`)).equals(readFileSync(join(folder, `own_${frame}.png`))),
+      frame,
+    );
+});

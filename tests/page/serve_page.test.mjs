@@ -159,9 +159,13 @@ inPage("makes a control for every parameter of every effect from its declaration
         hint: node.querySelector(".hint").textContent,
       })),
     );
+    // Without a section first, then by section, and the advanced ones last.
+    const named = Object.entries(params),
+      sections = [...new Set(["", ...named.map(([, { section = "" }]) => section)])],
+      inOrder = sections.flatMap((one) => named.filter(([, p]) => !p.advanced && (p.section ?? "") === one));
     assert.deepEqual(
       rows.map((one) => one.id),
-      Object.keys(params),
+      [...inOrder, ...named.filter(([, p]) => p.advanced)].map(([name]) => name),
       id,
     );
     for (const one of rows) {
@@ -254,6 +258,7 @@ inPage("sets choices, switches, colours and lists", async (page) => {
   await row(bokeh, "shape").getByRole("combobox").selectOption("octagon");
   assert.equal((await changed(page, before)).steps[0].params.shape, "octagon");
   before = await textOf(page);
+  await bokeh.getByText("Advanced").click();
   await row(bokeh, "highlight_repair").getByRole("checkbox").uncheck();
   assert.equal((await changed(page, before)).steps[0].params.highlight_repair, false);
   before = await textOf(page);
@@ -1372,7 +1377,7 @@ inPage("can be used by the keyboard alone, with the focus in sight", async (page
   ];
   for (const label of wanted) assert.ok(seen.has(label), `${label} in ${[...seen]}`);
   // A step is added, moved, opened, changed and saved; a letter in a field is text.
-  while (await page.evaluate(() => document.activeElement.matches("input[type=text]"))) await page.keyboard.press("Tab");
+  while (await page.evaluate(() => document.activeElement.matches("input[type=text], select"))) await page.keyboard.press("Tab");
   await page.keyboard.press("s");
   await page.keyboard.press("a");
   await page.keyboard.type("sharpen");

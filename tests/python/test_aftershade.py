@@ -127,6 +127,13 @@ def test_parameters_have_what_describe_prints(host):
     assert "bokeh" in [one.id for one in host.effects()] and "blender" in host.profiles()
 
 
+def test_the_package_has_the_looks_to_start_from(host):
+    looks = sorted((Path(aftershade._host.shipped_data()) / "looks").glob("*.json"))
+    assert {file.name for file in looks} == {file.name for file in (ROOT / "looks").glob("*.json")}
+    for file in looks:
+        assert aftershade.Look(file, host=host).params, file
+
+
 def test_a_smaller_aperture_blurs_less(host):
     look, arrays = aftershade.Look(BLUR, host=host), frame_arrays()
     arrays["color"][4::8, 4::8, :3] = 20

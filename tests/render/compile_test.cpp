@@ -197,6 +197,35 @@ TEST_F(Compile, NamesEffectRoleAndChannelsOfAMissingRole) {
         << "outputs need color";
 }
 
+TEST_F(Compile, NamesEveryMissingRoleOnceWithTheRemediesOfTheProfile) {
+    effects_.add(
+        "blur",
+        R"("inputs": { "color": { "role": "color" }, "velocity": { "role": "velocity" } }, "outputs": { "color": { "role": "color" } },
+           "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "velocity"], "writes": ["color"] } ])",
+        "void main() { out_color = vec4(0); }\n");
+    CaptureHeader header;
+    header.path = "in.exr";
+    header.profile = "maker";
+    header.roles = {"color"};
+    header.channels = {"B", "G", "R"};
+    header.remedies = {{"velocity", "tick Vector"}, {"normal", "tick Normal"}};
+    const Bound bound(
+        effects_,
+        look_of(R"({ "effect": "fog" }, { "effect": "blur" }, { "effect": "fog", "name": "again" })"));
+    ASSERT_EQ(bound.faults(), "");
+    try {
+        require_capture_roles(bound.pipeline(), header);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_STREQ(
+            error.what(),
+            "in.exr: step 'fog' (effect fog) needs the role 'depth' and step 'blur' (effect blur) "
+            "needs the role 'velocity', which the profile 'maker' does not find among the channels "
+            "B, G, R (for 'velocity': tick Vector; \"channels\": {\"ROLE\": {\"channels\": [...]}} in "
+            "capture.json names its channels)");
+    }
+}
+
 TEST_F(Compile, PrefersTheUsersEffectToAShippedOneOfItsName) {
     effects_.add_color("bokeh", "source");
     EXPECT_NE(Bound(effects_, look_of(R"({ "effect": "bokeh", "params": { "f_number": 2 } })")).faults(), "");

@@ -3,6 +3,7 @@
     python check_files.py PROGRAM FOLDER
 """
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -58,7 +59,21 @@ class Check:
             if told:
                 self.expect("file_output.exr", "roles", {"color", "depth", "velocity", "normal"} - set(told["roles"]),
                             set())
+        self.addon()
         self.mask()
+
+    def addon(self):
+        """What the add-on wrote has every role, and the camera that the scene has."""
+        name = "addon/capture.json"
+        self.multilayer(name, "ViewLayer", ["ViewLayer"])
+        told = self.inspect(name)
+        if told:
+            camera = told["camera"]
+            self.expect(name, "focal length", camera.get("focal_length"), 50)
+            self.expect(name, "sensor", camera.get("sensor_width"), 36)
+            # Suzanne is at (-1, 0, 0.2), the camera at (0, -6, 1.5), turned by 1.4 rad: along its axis.
+            along = 6 * math.sin(1.4) + 1.3 * math.cos(1.4)
+            self.expect(name, "focus on Suzanne", round(camera.get("focus_distance", 0), 3), round(along, 3))
 
     def mask(self):
         """A mask by an object's name changes pixels of that object alone."""

@@ -151,4 +151,5 @@ def main():
     render(scene, folder / "layers.exr")
 
 
-main()
+if __name__ == "__main__":
+    main()

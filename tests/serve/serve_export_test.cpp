@@ -1,0 +1,117 @@
+// Frames that the page has written: images and videos, whole or not at all.
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "framework/base/atomic_file.h"
+#include "framework/base/error.h"
+#include "tests/serve/serve_fixture.h"
+
+namespace aftershade::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ServeExport : public Serve {
+protected:
+    Answer begin(const std::string& name, const std::string& format) const {
+        return post("/api/export/start", Json{{"name", name}, {"format", format}}.dump());
+    }
+    /// The state at the end of the export.
+    Json ended() const {
+        for (int i = 0; i < 600; ++i) {
+            Json state = get("/api/export").json();
+            if (!state["runs"].get<bool>()) return state;
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        return {};
+    }
+    /// Names in the look's folder that were not there before.
+    std::vector<std::string> made() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
+            if (const std::string name = entry.path().filename();
+                name != "look.json" && name != "secret.txt" && !name.starts_with("in_"))
+                names.push_back(name);
+        return names;
+    }
+};
+
+TEST_F(ServeExport, WritesEachFrameOfTheLookAsEditedAsRunWritesIt) {
+    frames_ = 3;
+    start();
+    ASSERT_EQ(set(1.5).status, 200);
+    ASSERT_EQ(begin("shot", "png").status, 200);
+    const Json state = ended();
+    EXPECT_EQ(state["fault"], "");
+    EXPECT_EQ(state["written"], (folder_ / "shot").string());
+    EXPECT_EQ(state["done"], 3);
+    std::string edited = kLook;
+    edited.replace(edited.find("0.5"), 3, "1.5");
+    write_text(folder_ / "edited.json", edited);
+    Command run(aftershade_words({"run", "edited.json", "in_####.exr", "-o", "own_####.png", "--no-journal",
+                                  "--backend", "software"}),
+                folder_.path(), {});
+    ASSERT_EQ(run.wait().exit_code, 0);
+    for (const char* frame : {"0001.png", "0002.png", "0003.png"})
+        EXPECT_TRUE(read_text_file(folder_ / "shot" / (std::string("shot_") + frame), ErrorKind::output) ==
+                    read_text_file(folder_ / (std::string("own_") + frame), ErrorKind::output))
+            << frame;
+    EXPECT_EQ(read_text_file(folder_ / "look.json", ErrorKind::output), kLook) << "it was not saved";
+    EXPECT_EQ(begin("shot", "exr").status, 409) << "the name is taken";
+    ASSERT_EQ(begin("job", "exr").status, 200) << "a file of the export's own has this name";
+    EXPECT_EQ(ended()["fault"], "");
+    EXPECT_TRUE(fs::is_regular_file(folder_ / "job/job_0003.exr"));
+}
+
+TEST_F(ServeExport, LeavesNothingOfWhatIsCancelled) {
+    frames_ = 9;
+    start();
+    ASSERT_EQ(begin("shot", "png").status, 200);
+    EXPECT_EQ(begin("other", "png").status, 409) << "one runs";
+    ASSERT_EQ(post("/api/export/cancel").status, 200);
+    EXPECT_EQ(ended()["fault"], "cancelled; nothing was written");
+    EXPECT_EQ(made(), std::vector<std::string>{});
+    ASSERT_EQ(begin("shot", "png").status, 200) << "another may follow";
+    EXPECT_EQ(ended()["fault"], "");
+}
+
+TEST_F(ServeExport, LeavesNothingWhereAFrameFailsAndSaysWhy) {
+    frames_ = 3;
+    start();
+    write_text(folder_ / "in_0002.exr", "no picture");
+    ASSERT_EQ(begin("shot", "exr").status, 200);
+    EXPECT_NE(ended()["fault"].get<std::string>().find("in_0002.exr"), std::string::npos);
+    EXPECT_EQ(made(), std::vector<std::string>{});
+}
+
+TEST_F(ServeExport, RefusesNamesThatLeaveTheFolderOtherFormatsAndLooksWithFaults) {
+    start();
+    for (const char* name : {"", "../out", "/tmp/out", ".out", "a/b", "a#b"})
+        EXPECT_EQ(begin(name, "png").status, 400) << name;
+    EXPECT_EQ(begin("shot", "gif").status, 400);
+    EXPECT_EQ(post("/api/export/start", "{}").status, 400);
+    ASSERT_EQ(set(1e9).status, 200);
+    const Answer refused = begin("shot", "png");
+    EXPECT_EQ(refused.status, 409);
+    EXPECT_NE(refused.body.find("the look has faults"), std::string::npos) << refused.body;
+    EXPECT_EQ(made(), std::vector<std::string>{});
+}
+
+TEST_F(ServeExport, WritesNothingWithReadOnly) {
+    start({"--read-only"});
+    EXPECT_EQ(begin("shot", "png").status, 403);
+    EXPECT_EQ(made(), std::vector<std::string>{});
+}
+
+TEST_F(ServeExport, NamesTheRemedyForAVideoWithoutFfmpeg) {
+    environment_["PATH"] = "/nowhere";
+    start();
+    const Answer refused = begin("film", "mp4");
+    EXPECT_EQ(refused.status, 409);
+    EXPECT_NE(refused.body.find("Debian package ffmpeg"), std::string::npos) << refused.body;
+}
+
+}  // namespace
+}  // namespace aftershade::test
