@@ -14,6 +14,7 @@
 #include "cli/golden_comment_verb.h"
 #include "cli/golden_init_verb.h"
 #include "cli/golden_options.h"
+#include "cli/golden_serve_verb.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
@@ -274,6 +275,7 @@ Verb add_golden(CLI::App& app) {
     add_page_limit(*report_verb, *options);
     const std::map<std::string, std::function<ExitCode()>> others{{"comment", add_golden_comment(app)},
                                                                   {"init", add_golden_init(app)},
+                                                                  {"serve", add_golden_serve(app)},
                                                                   {"apply-approvals", add_golden_apply(app)}};
     return [options, approve_verb, report_verb, others, &app] {
         return with_own_codes([&] {

@@ -101,7 +101,7 @@ std::function<ExitCode()> add_golden_apply(CLI::App& golden) {
     auto arguments = std::make_shared<ApplyArguments>();
     auto* const verb = golden.add_subcommand(
         "apply-approvals",
-        "Approve what a file of decisions or commit messages say, if approvers.json allows it");
+        "Approve the cases that a file or commit messages name, if approvers.json allows it");
     verb->add_option("suite", arguments->golden.suite, "A golden.json or its folder")->required();
     verb->add_option("file", arguments->file,
                      "Decisions (JSON), as the report's page downloads them or golden serve keeps them");
