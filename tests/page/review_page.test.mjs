@@ -1,6 +1,6 @@
 // The page that a golden suite is reviewed with: `aftershade golden serve`, and the report without a server.
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, watch, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -195,6 +195,23 @@ test("writes no image that differs from the one that was reviewed", async () => 
   await server.end();
 });
 
+/** Half of the kills fall on times of the drawing, half on the first to tenth rename of a golden. */
+function killWhen(i, server, suite) {
+  return new Promise((done) => {
+    const kill = () => {
+      renames.close();
+      clearTimeout(limit);
+      server.kill();
+      done();
+    };
+    let seen = 0;
+    const renames = watch(join(suite, "goldens"), (_, name) => {
+      if (i % 2 && !name.startsWith(".") && ++seen > i / 4) kill();
+    });
+    const limit = setTimeout(kill, i % 2 ? 20_000 : i * 50); // a decision takes milliseconds, 8 images a second or two
+  });
+}
+
 test(
   "killed at 40 moments leaves each file old or new, and the next write completes it",
   { timeout: 600_000 },
@@ -214,8 +231,7 @@ test(
       const work = ask("/api/decide", { decisions: wishes })
         .then(() => ask("/api/write", {}))
         .catch(() => null);
-      await new Promise((done) => setTimeout(done, i * 50)); // a decision takes milliseconds, 8 images a second or two
-      server.kill();
+      await killWhen(i, server, suite);
       await work;
       const now = goldensOf(suite);
       const states = Object.keys(now).filter((path) => !path.startsWith("."));
