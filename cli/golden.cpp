@@ -3,14 +3,18 @@
 
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
+#include "cli/golden_apply_verb.h"
+#include "cli/golden_approval.h"
 #include "cli/golden_comment_verb.h"
 #include "cli/golden_init_verb.h"
 #include "cli/golden_options.h"
+#include "cli/golden_serve_verb.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
@@ -162,7 +166,9 @@ ExitCode run_prepared(const GoldenOptions& options, const GoldenSetup& setup) {
     return ExitCode(int(result.verdict));
 }
 
-ExitCode run(const GoldenOptions& options) {
+}  // namespace
+
+ExitCode run_golden(const GoldenOptions& options) {
     const auto or_early_end = [&](const auto& work) {
         try {
             return work();
@@ -177,27 +183,7 @@ ExitCode run(const GoldenOptions& options) {
     return or_early_end([&] { return run_prepared(options, setup); });
 }
 
-void print_approval(const GoldenApproval& approval) {
-    for (const GoldenCaseResult& test : approval.cases)
-        if (test.verdict != Verdict::same) {
-            std::cerr << fmt::format("\nFAILED {}: not rendered, its goldens are as they were\n",
-                                     test.test->name);
-            for (const std::string& message : test.messages)
-                std::cerr << "    " << printable_lines(message) << "\n";
-        }
-    std::cerr << "\n";
-    for (const fs::path& path : approval.written) std::cout << path.string() << "\n";
-    for (const fs::path& path : approval.renewed) std::cout << path.string() << "\n";
-    std::cout << std::flush;
-    for (const fs::path& path : approval.outdated)
-        std::cerr << fmt::format(
-            "{}: warning: approved too, by another renderer for another look or other effects; "
-            "approve it again there, or remove it\n",
-            path.string());
-    std::cerr << fmt::format("{} written, {} renewed, {} unchanged\n",
-                             counted(approval.written.size(), "image"),
-                             counted(approval.renewed.size(), "sidecar"), approval.unchanged);
-}
+namespace {
 
 ExitCode approve(const GoldenOptions& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
@@ -207,9 +193,7 @@ ExitCode approve(const GoldenOptions& options) {
     if (!options.any_renderer)
         if (const std::string why = foreign_goldens(setup.suite, setup.context.options); !why.empty())
             throw CodedError(kCompareUsage, why);
-    GoldenApproveOptions approve_options = approve_options_of(
-        setup, options,
-        printed_command({"aftershade", "golden", "approve", options.suite}) + setup.context.with_options);
+    GoldenApproveOptions approve_options = approve_options_of(setup, options, approve_command(setup));
     approve_options.add = options.add;
     approve_options.renew_sidecars = options.renew_sidecars;
     const GoldenApproval approval = approve_goldens(
@@ -239,14 +223,6 @@ ExitCode report(const GoldenOptions& options) {
     refuse_outputs(diagnostics);
     std::cout << write_page(options.report, options.page, options.page_limit_mb).string() << "\n";
     return ExitCode::done;
-}
-
-CLI::Option* add_page_limit(CLI::App& app, GoldenOptions& options) {
-    return app
-        .add_option("--page-limit", options.page_limit_mb,
-                    "MiB of pictures to embed in index.html; it links to the rest")
-        ->check(CLI::Range(0.0, 400.0))
-        ->capture_default_str();
 }
 
 /// The codes of this verb are idiff's: what cannot be read, drawn or written is a file error.
@@ -287,28 +263,26 @@ Verb add_golden(CLI::App& app) {
     add_shared_golden_options(*approve_verb, *options);
     approve_verb->add_flag("--add", options->add,
                            "Add a golden for this renderer and keep those of other renderers");
-    approve_verb->add_flag(
-        "--any-renderer", options->any_renderer,
-        "Approve even if the goldens are from hardware and this renderer is software, or vice versa");
+    add_any_renderer_option(*approve_verb, *options);
     approve_verb->add_flag("--renew-sidecars", options->renew_sidecars,
                            "If the bits are equal, update the sidecar (renderer, hash of look and effects)");
-    approve_verb
-        ->add_option("--approver", options->approver,
-                     "Name for the sidecars of new images (default: git's user.name, else $USER)")
-        ->type_name("NAME");
+    add_approver_option(*approve_verb, *options);
     auto* report_verb =
         app.add_subcommand("report", "Rebuild the page of a report folder and print its path");
     report_verb->add_option("report", options->report, "The folder that run --report wrote")->required();
     report_verb->add_option("-o,--output", options->page,
                             "Write the page here (default: index.html in that folder)");
     add_page_limit(*report_verb, *options);
-    const std::vector<std::function<ExitCode()>> others{add_golden_comment(app), add_golden_init(app)};
+    const std::map<std::string, std::function<ExitCode()>> others{{"comment", add_golden_comment(app)},
+                                                                  {"init", add_golden_init(app)},
+                                                                  {"serve", add_golden_serve(app)},
+                                                                  {"apply-approvals", add_golden_apply(app)}};
     return [options, approve_verb, report_verb, others, &app] {
         return with_own_codes([&] {
-            if (app.got_subcommand("comment")) return others[0]();
-            if (app.got_subcommand("init")) return others[1]();
+            const auto other = others.find(app.get_subcommands().front()->get_name());
+            if (other != others.end()) return other->second();
             if (report_verb->parsed()) return report(*options);
-            return approve_verb->parsed() ? approve(*options) : run(*options);
+            return approve_verb->parsed() ? approve(*options) : run_golden(*options);
         });
     };
 }

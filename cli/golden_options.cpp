@@ -24,22 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The last line that git prints; "" where git is absent or fails.
-std::string line_of_git(const fs::path& folder, const std::vector<std::string>& words) {
-    WorkerCommand command;
-    command.arguments = {"/usr/bin/git", "-C", fs::absolute(folder).string()};
-    command.arguments.insert(command.arguments.end(), words.begin(), words.end());
-    command.limits.wall_time = std::chrono::seconds(10);
-    std::string last;
-    WorkerListener listener;
-    listener.on_stdout = [&](std::string_view line) { last = line; };
-    try {
-        return run_worker(command, listener).succeeded() ? last : "";
-    } catch (const Error&) {
-        return "";
-    }
-}
-
 /// The options of the `part`-th case.
 gpu::GlChoice gl_of(const GoldenOptions& options, int part) {
     GlOptions gl = options.gl;
@@ -147,6 +131,27 @@ GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOp
     approve.approver = approver_of(options, setup.suite.folder());
     approve.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
     return approve;
+}
+
+std::string output_of_git(const fs::path& folder, const std::vector<std::string>& words) {
+    WorkerCommand command;
+    command.arguments = {"/usr/bin/git", "-C", fs::absolute(folder).string()};
+    command.arguments.insert(command.arguments.end(), words.begin(), words.end());
+    command.limits.wall_time = std::chrono::seconds(10);
+    std::string text;
+    WorkerListener listener;
+    listener.on_stdout = [&](std::string_view line) { text.append(line) += '\n'; };
+    try {
+        return run_worker(command, listener).succeeded() ? text : "";
+    } catch (const Error&) {
+        return "";
+    }
+}
+
+std::string line_of_git(const fs::path& folder, const std::vector<std::string>& words) {
+    std::string text = output_of_git(folder, words);
+    if (text.ends_with('\n')) text.pop_back();
+    return text;
 }
 
 std::string approver_of(const GoldenOptions& options, const fs::path& folder) {

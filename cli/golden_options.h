@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/exit_code.h"
 #include "cli/gl_options.h"
 #include "framework/batch/golden_approve.h"
 #include "framework/batch/golden_report.h"
@@ -49,6 +50,14 @@ GoldenSetup prepare_golden(const GoldenOptions& options);
 /// What approves the images of a suite now, by that command.
 GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOptions& options,
                                         std::string command);
+
+/// `aftershade golden run`.
+ExitCode run_golden(const GoldenOptions& options);
+
+/// What `git -C folder` prints with these words; "" where git is absent or fails.
+std::string output_of_git(const std::filesystem::path& folder, const std::vector<std::string>& words);
+/// The only line of it.
+std::string line_of_git(const std::filesystem::path& folder, const std::vector<std::string>& words);
 
 /// --approver, else git's user.name in the folder, else $USER; "" where none of them is set.
 std::string approver_of(const GoldenOptions& options, const std::filesystem::path& folder);

@@ -46,6 +46,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"serve",
      {"base", "document", "image", "file", "capture", "compare", "gpu", "graph", "effect", "look", "render",
       "run"}},
+    {"review", {"base", "document", "batch", "compare", "serve"}},
     {"scene", {"base", "document", "scattering", "image", "file", "capture"}},
     {"visibility", {"base", "gpu", "graph", "image", "scene"}},
 };

@@ -70,8 +70,10 @@ public:
     Approver(const GoldenSuite& suite, const GoldenApproveOptions& options, GoldenApproval& approval)
         : options_(options), approval_(approval), inputs_(suite_inputs(suite, false)) {}
 
-    void take(const GoldenCaseResult& result, const std::vector<RenderedImage>& images) {
+    void take(GoldenCaseResult& result, const std::vector<RenderedImage>& images) {
         const std::scoped_lock lock(mutex_);
+        refuse(result, images);
+        if (result.verdict != Verdict::same) return;
         std::error_code failure;
         fs::create_directories(result.test->goldens, failure);
         if (failure) throw Error(ErrorKind::output, result.test->goldens.string() + ": " + failure.message());
@@ -80,12 +82,31 @@ public:
     void commit() { staging_.commit(); }
 
 private:
+    using Approved = std::vector<ApprovedImage>;
+    static Approved::const_iterator find_equal(const Approved& approved, const RenderedImage& image) {
+        return std::ranges::find_if(
+            approved, [&](const ApprovedImage& other) { return same_bits(other.file, image.file); });
+    }
+
+    /// A failure of the case where something stands against one of its new images.
+    void refuse(GoldenCaseResult& result, const std::vector<RenderedImage>& images) const {
+        if (!options_.why_not) return;
+        for (const RenderedImage& image : images) {
+            const Approved approved =
+                approved_images(result.test->goldens, image.name, options_.run.environment);
+            if (find_equal(approved, image) != approved.end()) continue;
+            const std::string why = options_.why_not(*result.test, image, approved);
+            if (why.empty()) continue;
+            result.verdict = Verdict::failure;
+            result.messages.push_back(image.name + ": " + why);
+        }
+    }
+
     void take(const GoldenCase& test, const RenderedImage& image, const GoldenSources& sources) {
         const GoldenEnvironment& own = options_.run.environment;
-        const std::vector<ApprovedImage> approved = approved_images(test.goldens, image.name, own);
+        const Approved approved = approved_images(test.goldens, image.name, own);
         GoldenSidecar sidecar{own, options_.command, sources, "", "", ""};
-        const auto equal = std::ranges::find_if(
-            approved, [&](const ApprovedImage& other) { return same_bits(other.file, image.file); });
+        const auto equal = find_equal(approved, image);
         if (equal != approved.end()) {
             ++approval_.unchanged;
             // A sidecar of another image is what a kill between the two renames leaves.

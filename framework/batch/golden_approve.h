@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,11 @@ struct GoldenApproveOptions {
     std::string command;          ///< for the sidecars
     std::string approver;         ///< for those of images with new bits; "": no one is named
     std::string approved;         ///< the day, UTC
+    /// What stands against a new image, with those approved by its name; "": nothing. A case with such an
+    /// image keeps its goldens. [called by one thread at a time]
+    std::function<std::string(const GoldenCase& test, const RenderedImage& image,
+                              const std::vector<ApprovedImage>& approved)>
+        why_not{};
 };
 
 struct GoldenApproval {
@@ -24,9 +30,9 @@ struct GoldenApproval {
     std::vector<std::filesystem::path> renewed;   ///< sidecars alone
     std::vector<std::filesystem::path> outdated;  ///< approved by other renderers, of another look or effects
     std::size_t unchanged = 0;                    ///< images whose bits are approved already
-    std::vector<GoldenCaseResult> cases;          ///< with verdict and messages of those that did not render
-    Verdict verdict = Verdict::same;              ///< the worst
-    bool interrupted = false;                     ///< then nothing was written
+    std::vector<GoldenCaseResult> cases;  ///< with verdict and messages of those that keep their goldens
+    Verdict verdict = Verdict::same;      ///< the worst
+    bool interrupted = false;             ///< then nothing was written
 };
 
 /// "" where the cases' goldens are of the kind of renderer of `environment`, software or hardware, or have no

@@ -23,6 +23,7 @@ namespace aftershade {
 struct GoldenPictures {
     std::string reference, test, difference, heat_map, side_by_side;  ///< .png
     std::string reference_exr, test_exr;                              ///< as they are
+    std::string reference_hash, test_hash;                            ///< of both, as file_hash() gives them
     double difference_scale = 1;  ///< of difference.png: |reference - test| times this
 };
 

@@ -159,6 +159,7 @@ void write_pictures(const GoldenCase& test, const CompareRules& rules, const Ren
     GoldenPictures& pictures = result.pictures;
     copy_into(rendered.file, path("test", ".exr"));
     pictures.test_exr = told(path("test", ".exr"));
+    pictures.test_hash = file_hash(rendered.file);
     // Without an approved image the new one stands for both; there is no difference to be seen.
     const fs::path reference = result.approved ? result.approved->file : rendered.file;
     PictureTaker taker;
@@ -174,6 +175,7 @@ void write_pictures(const GoldenCase& test, const CompareRules& rules, const Ren
     if (result.approved) {
         copy_into(reference, path("reference", ".exr"));
         pictures.reference_exr = told(path("reference", ".exr"));
+        pictures.reference_hash = file_hash(reference);
     }
     if (!taker.row()) return;  // nothing could be compared
     const SideBySideRow& row = *taker.row();

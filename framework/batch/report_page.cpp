@@ -67,6 +67,7 @@ public:
         return texts_.size() - 1;
     }
     std::size_t size() const { return texts_.size(); }
+    const std::vector<std::string>& texts() const { return texts_; }
     std::uint64_t room_bytes() const { return limit_bytes_ - bytes_; }
     /// Forgets what was added since there were `count`.
     void shrink_to(std::size_t count) {
@@ -161,12 +162,7 @@ private:
 
     Json png(const Json& name) {
         if (!name.is_string()) return nullptr;
-        constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
-        const auto file = name.get<std::string>();
-        std::string fault;
-        const std::string bytes = read_file_below(report_, file, kMaxPictureBytes, fault);
-        if (fault.empty() && !bytes.starts_with(kPngMagic)) fault = "is not a PNG";
-        if (!fault.empty()) throw Error(ErrorKind::capture, file + ": " + fault);
+        const std::string bytes = read_report_png(report_, name.get<std::string>());
         return store_.add(base64(std::as_bytes(std::span(bytes))));
     }
 
@@ -252,20 +248,57 @@ std::string in_element(const Json& json) {
     return result;
 }
 
-}  // namespace
-
-void write_report_page(const fs::path& report, const fs::path& page, const ReportPageOptions& options) {
+/// What the page shows of a report; its pictures go to the store.
+Json page_data(const fs::path& report, Store& store) {
     Json data;
-    Store store(options.limit_bytes);
     with_report(report, [&](Json& read) {
         check_keys(read);
         add_images(read, report, store);
         data = std::move(read);
     });
     data["palette"] = palette();
+    return data;
+}
+
+/// Nothing is loaded from anywhere; pictures that did not fit lie beside the page. A server sends a policy of
+/// its own as a header.
+constexpr std::string_view kPolicy =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+    "script-src 'unsafe-inline'; img-src data: 'self' file:\">\n<link rel=\"icon\" href=\"data:,\">";
+
+}  // namespace
+
+std::string read_report_png(const fs::path& report, const std::string& name) {
+    constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
+    std::string fault;
+    std::string bytes = read_file_below(report, name, kMaxPictureBytes, fault);
+    if (fault.empty() && !bytes.starts_with(kPngMagic)) fault = "is not a PNG";
+    if (!fault.empty()) throw Error(ErrorKind::capture, name + ": " + fault);
+    return bytes;
+}
+
+ServedReportPage served_report_page() {
+    std::string html(report_page_html());
+    replace_mark(html, "<!-- policy -->", "<link rel=\"icon\" href=\"/icon.svg\">");
+    replace_mark(html, "<!-- style -->", "<link rel=\"stylesheet\" href=\"/page.css\">");
+    replace_mark(html, "<!-- data -->", "");
+    replace_mark(html, "<!-- script -->", "<script type=\"module\" src=\"/page.js\"></script>");
+    return {std::move(html), std::string(report_page_style()), std::string(report_page_script())};
+}
+
+Json report_page_data(const fs::path& report, const ReportPageOptions& options) {
+    Store store(options.limit_bytes);
+    Json data = page_data(report, store);
+    return {{"report", std::move(data)}, {"texts", store.texts()}};
+}
+
+void write_report_page(const fs::path& report, const fs::path& page, const ReportPageOptions& options) {
+    Store store(options.limit_bytes);
+    Json data = page_data(report, store);
     std::error_code failure;
     data["folder"] = fs::proximate(report, fs::absolute(page).parent_path(), failure).generic_string();
     std::string html(report_page_html());
+    replace_mark(html, "<!-- policy -->", kPolicy);
     replace_mark(html, "<!-- style -->", fmt::format("<style>\n{}</style>", report_page_style()));
     replace_mark(html, "<!-- data -->",
                  fmt::format("<script type=\"application/json\" id=\"report\">{}</script>\n{}",

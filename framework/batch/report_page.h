@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace aftershade {
 
@@ -19,5 +21,17 @@ struct ReportPageOptions {
 /// cannot be written.
 void write_report_page(const std::filesystem::path& report, const std::filesystem::path& page,
                        const ReportPageOptions& options = {});
+
+/// The same page for a server, which sends its parts by themselves.
+struct ServedReportPage {
+    std::string html, style, script;  ///< the HTML requests /page.css, /page.js and /icon.svg
+};
+ServedReportPage served_report_page();
+/// {"report", "texts"}: what the page holds of a report. Throws Error(ErrorKind::capture).
+nlohmann::ordered_json report_page_data(const std::filesystem::path& report,
+                                        const ReportPageOptions& options = {});
+/// The bytes of a PNG below the report, by its relative path. Throws Error(ErrorKind::capture) where it is
+/// none.
+std::string read_report_png(const std::filesystem::path& report, const std::string& name);
 
 }  // namespace aftershade

@@ -129,6 +129,21 @@ Response json_response(const nlohmann::ordered_json& json) {
     return {200, "application/json", json.dump(-1, ' ', false, kReplace)};
 }
 
+nlohmann::ordered_json shallow_json(const std::string& text) {
+    using Json = nlohmann::ordered_json;
+    using Event = Json::parse_event_t;
+    constexpr int kDeepest = 80;
+    constexpr int kMostValues = 100'000;  // 1 MiB of text may be 350,000 lists, which take 40 MiB
+    int depth = 0, values = 0;
+    const auto is_small = [&](int level, Event event, Json&) {
+        depth = std::max(depth, level);
+        values += event == Event::value || event == Event::array_start || event == Event::object_start;
+        return level <= kDeepest && values <= kMostValues;
+    };
+    Json json = Json::parse(text, is_small, false);
+    return depth > kDeepest || values > kMostValues || json.is_discarded() ? Json() : json;
+}
+
 Response error_response(int status, const std::string& message) {
     const nlohmann::json json = {{"error", message}};
     constexpr auto kReplace = nlohmann::json::error_handler_t::replace;

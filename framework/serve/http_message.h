@@ -36,6 +36,8 @@ struct Response {
 };
 
 Response json_response(const nlohmann::ordered_json& json);
+/// Null for a text that is not JSON, or is nested deeper or has more values than anything that a page sends.
+nlohmann::ordered_json shallow_json(const std::string& text);
 /// {"error": message}
 Response error_response(int status, const std::string& message);
 /// Code 500: the message of an Error; of any other exception that it is a fault of the program.

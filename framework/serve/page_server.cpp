@@ -33,21 +33,6 @@ Number number_of(const Request& request, const std::string& name, Number otherwi
     return number;
 }
 
-/// Null for a text that is not JSON, or is nested deeper or has more values than anything that a page sends.
-Json shallow_json(const std::string& text) {
-    using Event = Json::parse_event_t;
-    constexpr int kDeepest = 80;
-    constexpr int kMostValues = 100'000;  // 1 MiB of text may be 350,000 lists, which take 40 MiB
-    int depth = 0, values = 0;
-    const auto is_small = [&](int level, Event event, Json&) {
-        depth = std::max(depth, level);
-        values += event == Event::value || event == Event::array_start || event == Event::object_start;
-        return level <= kDeepest && values <= kMostValues;
-    };
-    Json json = Json::parse(text, is_small, false);
-    return depth > kDeepest || values > kMostValues || json.is_discarded() ? Json() : json;
-}
-
 Json capture_json(const ServedCapture& capture) {
     const Sequence& sequence = capture.sequence;
     const CaptureHeader& header = capture.header;

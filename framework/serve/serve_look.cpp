@@ -1,16 +1,16 @@
 #include "framework/serve/serve_look.h"
 
 #include <memory>
-#include <optional>
+#include <utility>
 
 #include "framework/capture/capture.h"
 #include "framework/serve/connections.h"
 #include "framework/serve/exporter.h"
-#include "framework/serve/guards.h"
 #include "framework/serve/look_model.h"
 #include "framework/serve/page_files.h"
 #include "framework/serve/page_server.h"
 #include "framework/serve/picture_queue.h"
+#include "framework/serve/serve_page.h"
 #include "framework/serve/served_capture.h"
 
 namespace aftershade::serve {
@@ -41,7 +41,7 @@ std::shared_ptr<EffectRegistry> find_effects(const ServeOptions& options) {
 }
 
 void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
-    const auto files = read_page_files(options.data_folder / "page");
+    auto files = read_page_files(options.data_folder / "page");
     ServedCaptures captures(open_capture(options, options.capture),
                             [&](const std::string& name) { return open_capture(options, name); });
     LookModel look(
@@ -59,24 +59,11 @@ void serve(const ServeOptions& options, const std::atomic<bool>& stop) {
                             PictureQueue::Start::at_first_use);
     Exporter exporter(options.run_export);
     PageServer server({look, pictures, thumbnails, captures, exporter, options.effect_folders});
-    const std::string token = random_token();
-    if (options.ready)
-        options.ready("http://127.0.0.1:" + std::to_string(connections.port()) + "/#token=" + token);
-    const auto at_once = [&](const Request& head) -> std::optional<Response> {
-        if (auto refused = refusal(head, connections.port(), token)) return refused;
-        if (head.path.starts_with("/api/")) return std::nullopt;
-        const auto file = files.find(head.path);
-        if (file == files.end()) return error_response(404, "there is nothing at this address");
-        if (head.method != "GET") return error_response(405, "this address takes GET");
-        return file->second;
-    };
-    std::atomic<bool> is_open = false;
-    connections.run({at_once,
-                     [&](const Request& request, const Connections::Reply& reply) {
-                         if (!is_open.exchange(true) && options.opened) options.opened();
-                         server.answer(request, reply);
-                     }},
-                    stop);
+    serve_page(
+        connections,
+        {std::move(files), options.ready, options.opened,
+         [&](const Request& request, const Connections::Reply& reply) { server.answer(request, reply); }},
+        stop);
 }
 
 }  // namespace aftershade::serve

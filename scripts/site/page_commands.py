@@ -51,6 +51,10 @@ BEFORE = {
     ("docs/golden.md", "aftershade golden comment report"):
         "export URL=https://ci.example PULL_REQUEST=7\n"
         "printf '#!/bin/sh\\ngrep -q \"aftershade golden\" comment.md\\n' >\"$HOME/bin/gh\" && chmod +x \"$HOME/bin/gh\"\n",
+    ("docs/golden.md", "aftershade golden apply-approvals"):
+        """echo '{ "aftershade": 1, "approvers": [ { "who": ["ada@example.org"] } ] }' >SUITE/approvers.json
+echo '{ "aftershade": 1, "author": "ada@example.org", "decisions": [ { "case": "lens", "decision": "approve" } ] }' >decisions.json
+""",
     ("docs/batch.md", "aftershade run look.json wheel -o - "): "rm -f film.mp4\n",
     ("docs/isf.md", "aftershade import isf"):
         "mkdir -p filters\n"

@@ -18,6 +18,7 @@
 #include "framework/base/memory_limit.h"
 #include "framework/base/text.h"
 #include "framework/batch/golden_case.h"
+#include "framework/batch/golden_decisions.h"
 #include "framework/batch/golden_suite.h"
 #include "framework/capture/capture.h"
 #include "framework/capture/frame_range.h"
@@ -251,6 +252,15 @@ void golden(std::string_view bytes) {
     refused_or_read([&] { read_golden_suite(file.string(), faults); });
 }
 
+/// What was read is written, and read again as the same.
+void decisions(std::string_view bytes) {
+    Diagnostics faults;
+    const auto read = parse_decisions(bytes, "decisions.json", faults);
+    if (faults.has_errors()) return;
+    if (parse_decisions(decisions_text(read), "decisions.json", faults) != read)
+        broken("decisions are written as they were read");
+}
+
 void golden_case(std::string_view bytes) {
     document("case.json", bytes, [](const Node& node, const fs::path& file, Diagnostics& faults) {
         parse_effect_case(node, file, kSources, faults);
@@ -446,6 +456,7 @@ constexpr Target kTargets[] = {
     {"scene", "scene.json", scene_document},
     {"golden", "golden.json", golden},
     {"case", "case.json", golden_case},
+    {"decisions", "decisions.json", decisions},
     {"profile", "profile.json", profile},
     {"scattering", "scattering.json", scattering},
     {"glsl", "in.frag", glsl},

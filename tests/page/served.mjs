@@ -3,9 +3,9 @@ import { spawn } from "node:child_process";
 
 import { program } from "./suite.mjs";
 
-/** {address, end()} of `aftershade serve` with these words. */
-export async function startServer(words, options) {
-  const child = spawn(program, ["serve", ...words, "--port", "0"], options);
+/** {address, end(), kill()} of `aftershade serve`, or of another command that serves, with these words. */
+export async function startServer(words, options, command = ["serve"]) {
+  const child = spawn(program, [...command, ...words, "--port", "0"], options);
   let errors = "";
   child.stderr.on("data", (data) => (errors += data));
   const address = await new Promise((ready, fail) => {
@@ -23,7 +23,7 @@ export async function startServer(words, options) {
       child.on("exit", done);
       child.kill("SIGINT");
     });
-  return { address, end };
+  return { address, end, kill: () => child.kill("SIGKILL") };
 }
 
 export async function openServed(browser, address, options = {}) {

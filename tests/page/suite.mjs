@@ -5,8 +5,8 @@ import { join, resolve } from "node:path";
 
 const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 export const program = process.env.AFTERSHADE_EXECUTABLE ?? join(root, "build/release/aftershade");
-const scene = join(root, "scenes/starter"),
-  capture = join(scene, "capture.json"); // 240 x 135 px: colour, depth, velocity, ids
+const scene = join(root, "scenes/starter");
+export const capture = join(scene, "capture.json"); // 240 x 135 px: colour, depth, velocity, ids
 const smaller = join(root, "scenes/soap/capture.json"); // 160 x 90 px
 
 // Light that a test knows: (x / 64, y / 32, 1 / 4), all of it exact as half. One pixel can be changed.

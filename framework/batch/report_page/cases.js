@@ -145,12 +145,7 @@ function imageSection(image, report, viewers) {
           ? "Every bit that is not left out is as approved."
           : "Every bit is as approved.",
       ),
-      element("img", {
-        class: "whole",
-        src: smallPicture(image, report),
-        alt: `${image.name}, as approved`,
-        loading: "lazy",
-      }),
+      smallPicture(image, report, { class: "whole", alt: `${image.name}, as approved` }),
     );
   } else if (image.shown.layers.length || image.pictures.test) {
     const viewer = new Viewer(image, report);
@@ -176,7 +171,10 @@ function imageSection(image, report, viewers) {
         image.pictures.test_exr
           ? [image.pictures.reference_exr, image.pictures.test_exr]
               .filter(Boolean)
-              .flatMap((path, i) => [i ? ", " : "", element("a", { href: addressOf(report, path) }, path)])
+              .flatMap((path, i) => [
+                i ? ", " : "",
+                isServed ? path : element("a", { href: addressOf(report, path) }, path),
+              ])
           : null,
       ],
     ]),
@@ -203,14 +201,23 @@ function reasonsOf(test) {
 }
 
 /** Of an image that passes; beside the page where it did not fit. */
-const smallPicture = (image, report) =>
-  image.shown.picture === null ? addressOf(report, image.pictures.test) : pngAddress(image.shown.picture);
+function smallPicture(image, report, attributes) {
+  const picture = element("img", { ...attributes, loading: "lazy" });
+  if (image.shown.picture !== null) picture.src = pngAddress(image.shown.picture);
+  else if (!isServed) picture.src = addressOf(report, image.pictures.test);
+  else
+    pictureAddress(report, image.pictures.test).then(
+      (address) => (picture.src = address),
+      (error) => (picture.alt = error.message),
+    );
+  return picture;
+}
 
 /** What the line of a closed case shows. */
 function thumbnailOf(test, report) {
   const image = test.images.find((one) => one.pictures.test);
   if (!image) return element("span", { class: "thumbnail" });
-  return element("img", { class: "thumbnail", alt: "", loading: "lazy", src: smallPicture(image, report) });
+  return smallPicture(image, report, { class: "thumbnail", alt: "" });
 }
 
 function caseDetails(test, report, viewers) {

@@ -18,7 +18,7 @@ async function linkedLayer(image, report) {
   const load = async (path) => {
     if (!path) return null;
     const picture = new Image();
-    picture.src = addressOf(report, path);
+    picture.src = await pictureAddress(report, path);
     await picture.decode();
     return picture;
   };

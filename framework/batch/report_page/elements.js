@@ -78,6 +78,3 @@ function facts(pairs) {
       .map(([name, value]) => element("div", {}, element("dt", {}, name), element("dd", {}, value))),
   );
 }
-
-/** Where a file of the report lies, from the page. */
-const addressOf = (report, path) => `${report.folder}/${path}`.split("/").map(encodeURIComponent).join("/");

@@ -7,6 +7,9 @@ const KEYS = [
   ["?", "show these keys"],
   ["l", "light, dark, or as the system"],
   ["c", "copy the command that approves the case"],
+  ["y, n", "approve, reject the case"],
+  ["g", "approve all undecided cases of the same cause"],
+  ["u", "undo the last decision"],
   ["a r t d h w", "show all, reference, test, difference, FLIP heat map, wipe"],
   ["Space", "swap reference and test"],
   [", .", "move the wipe"],
@@ -87,6 +90,10 @@ class Page {
     this.buildHead();
     this.buildCases();
     this.buildFoot();
+    if (report.cases.some(isReviewable)) {
+      this.review = new Review(report, this);
+      this.review.start();
+    }
     document.addEventListener("keydown", (event) => this.key(event));
     addEventListener("hashchange", () => this.openLinked());
     this.openLinked();
@@ -232,9 +239,16 @@ class Page {
     for (const chip of this.chips) chip.setAttribute("aria-pressed", String(this.kinds.has(chip.dataset.kind)));
     for (const { test, node } of this.cards) {
       const text = [test.name, ...test.tags].join(" ").toLowerCase();
-      node.hidden = !this.kinds.has(kindOf(test)) || !words.every((word) => text.includes(word));
+      const isWanted = this.kinds.has(kindOf(test)) && words.every((word) => text.includes(word));
+      node.hidden = !isWanted || this.review?.shows(test) === false;
     }
     this.none.hidden = this.cards.some(({ node }) => !node.hidden);
+  }
+  showCase(test) {
+    const { node } = this.cards.find((card) => card.test === test);
+    node.open = true;
+    node.scrollIntoView({ block: "start" });
+    node.querySelector("summary").focus({ preventScroll: true });
   }
   /** index.html#case-bokeh/lens opens that case. */
   openLinked() {
@@ -280,13 +294,18 @@ class Page {
   nameTheme() {
     this.themeButton.textContent = { system: "System colours", light: "Light", dark: "Dark" }[this.theme];
   }
-  copyApproval() {
+  /** The case that keys are for: that of the focus, else of the current viewer. */
+  chosenCard() {
     const chosen = this.viewers.visible().includes(this.viewers.current)
       ? this.viewers.current.node.closest(".case")
       : null;
-    const card = document.activeElement.closest(".case") ?? chosen;
-    if (!card) return tell("Choose a case first (j, k)");
-    const { test } = this.cards.find(({ node }) => node === card);
+    const node = document.activeElement.closest(".case") ?? chosen;
+    return this.cards.find((card) => card.node === node);
+  }
+  copyApproval() {
+    const chosen = this.chosenCard();
+    if (!chosen) return tell("Choose a case first (j, k)");
+    const { test, node: card } = chosen;
     if (!test.approve) return tell(`${test.name}: nothing to approve`);
     copy(test.approve, card.querySelector(".command code"), `Copied the command that approves ${test.name}`);
   }
@@ -317,7 +336,7 @@ class Page {
       },
     };
     if (acts[event.key]) acts[event.key]();
-    else {
+    else if (!this.review?.key(event.key, this.chosenCard()?.test)) {
       const visible = this.viewers.visible();
       if (visible.length && !visible.includes(this.viewers.current)) this.viewers.choose(visible[0]);
       if (!this.viewers.current?.key(event)) return;
@@ -326,4 +345,4 @@ class Page {
   }
 }
 
-new Page(JSON.parse(document.getElementById("report").textContent));
+new Page(pageReport());

@@ -1,14 +1,7 @@
 // Pixels out of the page's own elements, as framework/batch/page_pixels.h writes them.
 
-const textOf = (index) => document.getElementById(`data-${index}`).textContent;
-
-const pngAddress = (index) => `data:image/png;base64,${textOf(index)}`;
-
 async function inflate(text) {
-  const letters = atob(text),
-    packed = new Uint8Array(letters.length);
-  for (let i = 0; i < letters.length; ++i) packed[i] = letters.charCodeAt(i); // .from() takes seconds for large pictures
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 

@@ -1,0 +1,122 @@
+#include "cli/golden_apply_verb.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/compare_options.h"
+#include "cli/golden_approval.h"
+#include "cli/golden_options.h"
+#include "cli/interrupt.h"
+#include "framework/base/atomic_file.h"
+#include "framework/base/text.h"
+#include "framework/batch/golden_apply.h"
+#include "framework/document/document.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ApplyArguments {
+    GoldenOptions golden;
+    std::string file, commits, author, approvers;
+};
+
+/// Those of the commits' messages, oldest first. Neither a name nor an address of git holds a NUL or '<'.
+std::vector<GoldenDecision> decisions_of_commits(const fs::path& folder, const std::string& commits) {
+    const std::string log =
+        output_of_git(folder, {"log", "--no-show-signature", "--reverse", "--no-walk=unsorted",
+                               "--format=%x00%an <%ae>%n%B", "--end-of-options", commits, "--"});
+    if (log.empty())
+        throw CodedError(kCompareUsage, "--commits " + commits + ": `git log` in " + folder.string() +
+                                            " gives no commit; name one, or a range such as main..HEAD");
+    std::vector<GoldenDecision> decisions;
+    std::istringstream parts(log);
+    std::string part;
+    std::getline(parts, part, '\0');  // before the first
+    while (std::getline(parts, part, '\0')) {
+        const std::size_t end = part.find('\n');
+        for (GoldenDecision& decision : decisions_of_message(
+                 std::string_view(part).substr(std::min(end, part.size())), part.substr(0, end)))
+            decisions.push_back(std::move(decision));
+    }
+    return decisions;
+}
+
+std::vector<GoldenDecision> read_decisions(const ApplyArguments& arguments, const fs::path& folder,
+                                           Diagnostics& diagnostics) {
+    if (arguments.file.empty() == arguments.commits.empty())
+        throw CodedError(kCompareUsage,
+                         "golden apply-approvals takes either a FILE of decisions or --commits");
+    std::vector<GoldenDecision> decisions =
+        arguments.file.empty()
+            ? decisions_of_commits(folder, arguments.commits)
+            : parse_decisions(read_text_file(arguments.file, ErrorKind::capture, kMaxDocumentBytes),
+                              arguments.file, diagnostics);
+    if (!arguments.author.empty())
+        for (GoldenDecision& decision : decisions) decision.by = arguments.author;
+    return decisions;
+}
+
+ExitCode apply(const ApplyArguments& arguments) {
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    GoldenSetup setup = prepare_golden(arguments.golden);
+    setup.context.suite = &setup.suite;
+    const fs::path folder = setup.suite.folder();
+    Diagnostics diagnostics;
+    GoldenApplyOptions options;
+    options.any_renderer = arguments.golden.any_renderer;
+    options.approvers = read_approvers(
+        arguments.approvers.empty() ? folder / "approvers.json" : fs::path(arguments.approvers), diagnostics);
+    const std::vector<GoldenDecision> decisions = resolve_decisions(
+        setup.suite, read_decisions(arguments, folder, diagnostics), options.approvers, diagnostics);
+    if (diagnostics.has_errors()) throw CodedError(kCompareUsage, diagnostics);
+    options.approve = approve_options_of(setup, arguments.golden, approve_command(setup));
+    const GoldenApplied applied = apply_decisions(setup.suite, decisions, options, {}, stop);
+    if (applied.approval.interrupted) {
+        std::cerr << "interrupted; the cases that are not listed were not written\n";
+        print_approval(applied.approval);
+        return ExitCode::interrupted;
+    }
+    print_approval(applied.approval);
+    for (const GoldenDecision& decision : applied.rejections)
+        std::cerr << printable_lines(fmt::format("REJECTED {} by {}: {}", decision.test, decision.by,
+                                                 decision.note.empty() ? "no note" : decision.note))
+                  << "\n";
+    if (decisions.empty()) std::cerr << "no decision: nothing was written\n";
+    return applied.rejections.empty() ? ExitCode(int(applied.approval.verdict))
+                                      : ExitCode(int(std::max(applied.approval.verdict, Verdict::failure)));
+}
+
+}  // namespace
+
+std::function<ExitCode()> add_golden_apply(CLI::App& golden) {
+    auto arguments = std::make_shared<ApplyArguments>();
+    auto* const verb = golden.add_subcommand(
+        "apply-approvals",
+        "Approve the cases that a file or commit messages name, if approvers.json allows it");
+    verb->add_option("suite", arguments->golden.suite, "A golden.json or its folder")->required();
+    verb->add_option("file", arguments->file,
+                     "Decisions (JSON), as the report's page downloads them or golden serve keeps them");
+    verb->add_option("--commits", arguments->commits,
+                     "Take the lines 'golden: approve CASE...' of these commits, such as HEAD or main..HEAD")
+        ->type_name("REVISIONS");
+    verb->add_option("--author", arguments->author,
+                     "Who decided, instead of the names in FILE: 'Ada <ada@example.org>'")
+        ->type_name("NAME");
+    verb->add_option("--approvers", arguments->approvers,
+                     "Who may approve (default: approvers.json in the suite's folder)")
+        ->type_name("FILE");
+    add_any_renderer_option(*verb, arguments->golden);
+    add_golden_drawing_options(*verb, arguments->golden);
+    return [arguments] { return apply(*arguments); };
+}
+
+}  // namespace aftershade::cli

@@ -1,0 +1,17 @@
+// `aftershade golden serve`: the report of a suite as a page to review it with.
+#pragma once
+
+#include <functional>
+
+#include "cli/exit_code.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace aftershade::cli {
+
+/// The verb's options are added to `golden`. Returns what the verb does.
+std::function<ExitCode()> add_golden_serve(CLI::App& golden);
+
+}  // namespace aftershade::cli

@@ -1,0 +1,159 @@
+#include "framework/batch/golden_decisions.h"
+
+#include <fnmatch.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "framework/document/document.h"
+
+namespace aftershade {
+
+using Json = nlohmann::ordered_json;
+using Presence = ObjectReader::Presence;
+
+namespace {
+
+/// A text of one line, since it is printed and stands in sidecars.
+std::string line_of(ObjectReader& reader, const Node& node, const std::string& key, std::size_t most,
+                    Presence presence, Diagnostics& diagnostics) {
+    const std::string text = reader.text(key, presence).value_or("");
+    const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+    if (text.size() > most)
+        diagnostics.error(node.find(key)->place,
+                          fmt::format("'{}' has {} bytes; the most is {}", key, text.size(), most));
+    else if (std::ranges::any_of(text, is_control))
+        diagnostics.error(node.find(key)->place,
+                          fmt::format("'{}' has a control character; write one line of text", key));
+    return text;
+}
+
+SeenImage image_of(const Node& node, Diagnostics& diagnostics) {
+    ObjectReader reader(node, "the image", diagnostics);
+    SeenImage image;
+    image.name = line_of(reader, node, "name", kMostNameBytes, Presence::required, diagnostics);
+    image.test = line_of(reader, node, "test", kMostNameBytes, Presence::required, diagnostics);
+    const Node* const reference = reader.any("reference");
+    if (reference && reference->kind != Node::Kind::null)
+        image.reference = line_of(reader, node, "reference", kMostNameBytes, Presence::optional, diagnostics);
+    reader.finish();
+    return image;
+}
+
+GoldenDecision decision_of(const Node& node, const std::string& author, Diagnostics& diagnostics) {
+    static constexpr std::array kWords{std::string("approve"), std::string("reject")};
+    ObjectReader reader(node, "the decision", diagnostics);
+    GoldenDecision decision;
+    decision.test = line_of(reader, node, "case", kMostNameBytes, Presence::required, diagnostics);
+    decision.approves = reader.choice("decision", kWords, Presence::required) == kWords[0];
+    decision.adds = reader.boolean("add").value_or(false);
+    decision.note = line_of(reader, node, "note", kMostNoteBytes, Presence::optional, diagnostics);
+    decision.by = line_of(reader, node, "by", kMostNameBytes, Presence::optional, diagnostics);
+    if (decision.by.empty()) decision.by = author;
+    if (const Node* const images = reader.array("images"))
+        for (const Node& image : images->items) decision.images.push_back(image_of(image, diagnostics));
+    decision.is_written = reader.boolean("written").value_or(false);
+    reader.finish();
+    return decision;
+}
+
+/// The address of "Ada <ada@example.org>", else the whole text.
+std::string_view identity_of(std::string_view by) {
+    const std::size_t open = by.rfind('<');
+    if (open == by.npos || !by.ends_with('>')) return by;
+    return by.substr(open + 1, by.size() - open - 2);
+}
+
+}  // namespace
+
+std::vector<GoldenDecision> parse_decisions(std::string_view text, const std::string& file,
+                                            Diagnostics& diagnostics) {
+    std::vector<GoldenDecision> decisions;
+    const auto node = parse_document(text, file, diagnostics);
+    if (!node) return decisions;
+    ObjectReader reader(*node, "the document", diagnostics);
+    if (!reader.is_object()) return decisions;
+    check_document_version(reader, *node, diagnostics);
+    const std::string author =
+        line_of(reader, *node, "author", kMostNameBytes, Presence::optional, diagnostics);
+    if (const Node* const list = reader.array("decisions", Presence::required))
+        for (const Node& one : list->items) decisions.push_back(decision_of(one, author, diagnostics));
+    reader.finish();
+    return decisions;
+}
+
+Json json_of(const GoldenDecision& decision) {
+    Json json = {{"case", decision.test},
+                 {"decision", decision.approves ? "approve" : "reject"},
+                 {"note", decision.note},
+                 {"by", decision.by},
+                 {"images", Json::array()}};
+    if (decision.adds) json["add"] = true;
+    if (decision.is_written) json["written"] = true;
+    for (const SeenImage& image : decision.images)
+        json["images"].push_back(
+            {{"name", image.name},
+             {"test", image.test},
+             {"reference", image.reference.empty() ? Json(nullptr) : Json(image.reference)}});
+    return json;
+}
+
+std::string decisions_text(const std::vector<GoldenDecision>& decisions) {
+    Json list = Json::array();
+    for (const GoldenDecision& decision : decisions) list.push_back(json_of(decision));
+    return Json{{"aftershade", 1}, {"decisions", std::move(list)}}.dump(1, ' ', false,
+                                                                        Json::error_handler_t::replace) +
+           "\n";
+}
+
+std::vector<GoldenDecision> decisions_of_message(std::string_view message, const std::string& author) {
+    constexpr std::string_view kTag = "golden: approve ";
+    std::vector<GoldenDecision> decisions;
+    std::istringstream lines{std::string(message)};
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with(kTag)) continue;
+        std::istringstream words(line.substr(kTag.size()));
+        for (std::string word; words >> word;) {
+            while (word.ends_with(',')) word.pop_back();
+            if (!word.empty()) decisions.push_back({word, true, false, "", author});
+        }
+    }
+    return decisions;
+}
+
+bool GoldenApprovers::may(const std::string& by, const std::string& test) const {
+    const std::string identity(identity_of(by));
+    return !identity.empty() && std::ranges::any_of(entries, [&](const Entry& entry) {
+        const auto fits = [&](const std::string& glob) {
+            return fnmatch(glob.c_str(), test.c_str(), 0) == 0;
+        };
+        return std::ranges::find(entry.who, identity) != entry.who.end() &&
+               std::ranges::any_of(entry.cases, fits);
+    });
+}
+
+GoldenApprovers read_approvers(const std::filesystem::path& file, Diagnostics& diagnostics) {
+    GoldenApprovers approvers;
+    const auto node = read_document(file, diagnostics);
+    if (!node) return approvers;
+    ObjectReader reader(*node, "the document", diagnostics);
+    if (!reader.is_object()) return approvers;
+    check_document_version(reader, *node, diagnostics);
+    if (const Node* const list = reader.array("approvers", Presence::required))
+        for (const Node& one : list->items) {
+            ObjectReader entry(one, "the entry", diagnostics);
+            GoldenApprovers::Entry result{entry.texts("cases"), entry.texts("who")};
+            if (result.cases.empty()) result.cases = {"*"};
+            entry.finish();
+            approvers.entries.push_back(std::move(result));
+        }
+    reader.finish();
+    return approvers;
+}
+
+}  // namespace aftershade
