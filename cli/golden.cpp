@@ -9,6 +9,7 @@
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
 #include "cli/golden_comment_verb.h"
+#include "cli/golden_explain_verb.h"
 #include "cli/golden_init_verb.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
@@ -302,11 +303,13 @@ Verb add_golden(CLI::App& app) {
     report_verb->add_option("-o,--output", options->page,
                             "Write the page here (default: index.html in that folder)");
     add_page_limit(*report_verb, *options);
-    const std::vector<std::function<ExitCode()>> others{add_golden_comment(app), add_golden_init(app)};
+    const std::vector<std::function<ExitCode()>> others{add_golden_comment(app), add_golden_init(app),
+                                                        add_golden_explain(app)};
     return [options, approve_verb, report_verb, others, &app] {
         return with_own_codes([&] {
             if (app.got_subcommand("comment")) return others[0]();
             if (app.got_subcommand("init")) return others[1]();
+            if (app.got_subcommand("explain")) return others[2]();
             if (report_verb->parsed()) return report(*options);
             return approve_verb->parsed() ? approve(*options) : run(*options);
         });

@@ -46,6 +46,9 @@ struct GoldenSetup {
 };
 GoldenSetup prepare_golden(const GoldenOptions& options);
 
+/// Why a name, glob or tag stands for no case; "" where it stands for one.
+std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter);
+
 /// What approves the images of a suite now, by that command.
 GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOptions& options,
                                         std::string command);
