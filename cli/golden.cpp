@@ -12,6 +12,7 @@
 #include "cli/golden_apply_verb.h"
 #include "cli/golden_approval.h"
 #include "cli/golden_comment_verb.h"
+#include "cli/golden_explain_verb.h"
 #include "cli/golden_init_verb.h"
 #include "cli/golden_options.h"
 #include "cli/golden_serve_verb.h"
@@ -275,6 +276,7 @@ Verb add_golden(CLI::App& app) {
     add_page_limit(*report_verb, *options);
     const std::map<std::string, std::function<ExitCode()>> others{{"comment", add_golden_comment(app)},
                                                                   {"init", add_golden_init(app)},
+                                                                  {"explain", add_golden_explain(app)},
                                                                   {"serve", add_golden_serve(app)},
                                                                   {"apply-approvals", add_golden_apply(app)}};
     return [options, approve_verb, report_verb, others, &app] {

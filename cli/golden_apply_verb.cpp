@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <sstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "cli/interrupt.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/text.h"
+#include "framework/batch/git_lines.h"
 #include "framework/batch/golden_apply.h"
 #include "framework/document/document.h"
 
@@ -29,23 +31,21 @@ struct ApplyArguments {
     std::string file, commits, author, approvers;
 };
 
-/// Those of the commits' messages, oldest first. Neither a name nor an address of git holds a NUL or '<'.
+/// Those of the commits' messages, oldest first. Before each message stands a line of its author, which begins with a NUL: no
+/// line of a message has one.
 std::vector<GoldenDecision> decisions_of_commits(const fs::path& folder, const std::string& commits) {
-    const std::string log =
-        output_of_git(folder, {"log", "--no-show-signature", "--reverse", "--no-walk=unsorted",
-                               "--format=%x00%an <%ae>%n%B", "--end-of-options", commits, "--"});
+    const std::vector<std::string> log =
+        lines_of_git(folder, {"log", "--no-show-signature", "--reverse", "--no-walk=unsorted",
+                              "--format=%x00%an <%ae>%n%B", "--end-of-options", commits, "--"});
     if (log.empty())
         throw CodedError(kCompareUsage, "--commits " + commits + ": `git log` in " + folder.string() +
                                             " gives no commit; name one, or a range such as main..HEAD");
     std::vector<GoldenDecision> decisions;
-    std::istringstream parts(log);
-    std::string part;
-    std::getline(parts, part, '\0');  // before the first
-    while (std::getline(parts, part, '\0')) {
-        const std::size_t end = part.find('\n');
-        for (GoldenDecision& decision : decisions_of_message(
-                 std::string_view(part).substr(std::min(end, part.size())), part.substr(0, end)))
-            decisions.push_back(std::move(decision));
+    for (auto line = log.begin(); line != log.end();) {
+        const std::string author = line->substr(1);
+        std::string message;
+        for (++line; line != log.end() && !line->starts_with('\0'); ++line) message += *line + '\n';
+        std::ranges::move(decisions_of_message(message, author), std::back_inserter(decisions));
     }
     return decisions;
 }

@@ -16,7 +16,7 @@
 #include "cli/exit_code.h"
 #include "cli/gl_options.h"
 #include "framework/base/text.h"
-#include "framework/batch/worker.h"
+#include "framework/batch/git_lines.h"
 
 namespace aftershade::cli {
 
@@ -40,21 +40,24 @@ gpu::GlChoice gl_of(const GoldenOptions& options, int part) {
 void check_words(const GoldenOptions& options, const GoldenSuite& suite, Diagnostics& diagnostics) {
     for (const std::string& path : options.effect_paths)
         if (!fs::is_directory(path)) diagnostics.error({"--effect-path " + path}, "no such folder");
-    for (const std::string& filter : options.filters) {
-        const auto fits = [&](const GoldenCase& test) { return fits_filter(test, {filter}); };
-        if (std::ranges::any_of(suite.cases, fits)) continue;
-        std::vector<std::string> words;
-        for (const GoldenCase& test : suite.cases) {
-            words.push_back(test.name);
-            words.insert(words.end(), test.tags.begin(), test.tags.end());
-        }
-        diagnostics.error({"--filter " + filter}, "fits no case's name or tag" + did_you_mean(filter, words));
-    }
+    for (const std::string& filter : options.filters)
+        if (const std::string why = fault_of_filter(suite, filter); !why.empty())
+            diagnostics.error({"--filter " + filter}, why);
     if (!options.report.empty() && fs::exists(options.report) && !fs::is_directory(options.report))
         diagnostics.error({"--report " + options.report}, "is not a folder");
 }
 
 }  // namespace
+
+std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter) {
+    std::vector<std::string> words;
+    for (const GoldenCase& test : suite.cases) {
+        if (fits_filter(test, {filter})) return "";
+        words.push_back(test.name);
+        words.insert(words.end(), test.tags.begin(), test.tags.end());
+    }
+    return "fits no case's name or tag" + did_you_mean(filter, words);
+}
 
 void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
     app.add_option("suite", options.suite, "A golden.json or its folder")->required();
@@ -133,25 +136,9 @@ GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOp
     return approve;
 }
 
-std::string output_of_git(const fs::path& folder, const std::vector<std::string>& words) {
-    WorkerCommand command;
-    command.arguments = {"/usr/bin/git", "-C", fs::absolute(folder).string()};
-    command.arguments.insert(command.arguments.end(), words.begin(), words.end());
-    command.limits.wall_time = std::chrono::seconds(10);
-    std::string text;
-    WorkerListener listener;
-    listener.on_stdout = [&](std::string_view line) { text.append(line) += '\n'; };
-    try {
-        return run_worker(command, listener).succeeded() ? text : "";
-    } catch (const Error&) {
-        return "";
-    }
-}
-
 std::string line_of_git(const fs::path& folder, const std::vector<std::string>& words) {
-    std::string text = output_of_git(folder, words);
-    if (text.ends_with('\n')) text.pop_back();
-    return text;
+    const std::vector<std::string> lines = lines_of_git(folder, words);
+    return lines.empty() ? "" : lines.back();
 }
 
 std::string approver_of(const GoldenOptions& options, const fs::path& folder) {

@@ -47,6 +47,9 @@ struct GoldenSetup {
 };
 GoldenSetup prepare_golden(const GoldenOptions& options);
 
+/// Why a name, glob or tag stands for no case; "" where it stands for one.
+std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter);
+
 /// What approves the images of a suite now, by that command.
 GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOptions& options,
                                         std::string command);
@@ -54,9 +57,7 @@ GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOp
 /// `aftershade golden run`.
 ExitCode run_golden(const GoldenOptions& options);
 
-/// What `git -C folder` prints with these words; "" where git is absent or fails.
-std::string output_of_git(const std::filesystem::path& folder, const std::vector<std::string>& words);
-/// The only line of it.
+/// The last line that `git -C folder` prints with these words; "" where git is absent or fails.
 std::string line_of_git(const std::filesystem::path& folder, const std::vector<std::string>& words);
 
 /// --approver, else git's user.name in the folder, else $USER; "" where none of them is set.

@@ -93,6 +93,7 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     sidecar.image_hash = text("image_hash");
     sidecar.approver = text("approver");
     sidecar.approved = text("approved");
+    sidecar.origin = origin_of(json);
     if (sidecar.image_hash.empty() || sidecar.image_hash == file_hash(image)) return sidecar;
     fault = {Verdict::warning,
              file.string() + ": is of another image than " + image.filename().string() + kRemedy};
@@ -200,6 +201,7 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
     json["image_hash"] = sidecar.image_hash;
     if (!sidecar.approver.empty()) json["approver"] = sidecar.approver;
     if (!sidecar.approved.empty()) json["approved"] = sidecar.approved;
+    add_origin(sidecar.origin, json);
     // Names of people need not be UTF-8.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

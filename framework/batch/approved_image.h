@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/batch/case_origin.h"
 #include "framework/compare/compare_files.h"
 #include "framework/gpu/context.h"
 
@@ -54,6 +55,7 @@ struct GoldenSidecar {
     std::string image_hash;     ///< of the image file's bytes: a sidecar of another image says nothing
     std::string approver = {};  ///< who approved it; "" where no one is named
     std::string approved = {};  ///< the day, UTC: "2025-03-14"; "" where it is not known
+    CaseOrigin origin = {};
 };
 
 /// Why a sidecar that is there is not believed, and what that is worth.

@@ -3,7 +3,15 @@
 #include <optional>
 #include <utility>
 
+#include "framework/base/data_path.h"
+
 namespace aftershade {
+
+std::vector<std::filesystem::path> effect_folders(const std::vector<std::string>& effect_paths) {
+    std::vector<std::filesystem::path> folders(effect_paths.begin(), effect_paths.end());
+    folders.push_back(data_path() / "effects");
+    return folders;
+}
 
 BoundCase bind_case(const GoldenCase& test, EffectRegistry& effects) {
     Diagnostics faults;

@@ -1,6 +1,6 @@
 #include "framework/batch/capture_hash.h"
 
-#include <set>
+#include <optional>
 
 #include "framework/base/content_hash.h"
 #include "framework/base/data_path.h"
@@ -38,16 +38,17 @@ void add_profiles(const Sequence& sequence, std::set<fs::path>& files) {
             files.insert(entry.path());
 }
 
-std::set<fs::path> files_of(const GoldenCase& test) {
+/// Of one frame alone, or of all with their neighbours.
+std::set<fs::path> files_of(const GoldenCase& test, std::optional<int> only) {
     Diagnostics faults;
     const std::optional<Sequence> sequence = open_sequence(test.capture.string(), faults);
     if (!sequence || faults.has_errors()) return {};
     std::set<fs::path> files;
     if (const auto document = capture_document(test.capture.string())) files.insert(*document);
-    const auto chosen = parse_frame_range(test.frames);
+    const auto chosen = only ? std::vector{*only} : parse_frame_range(test.frames);
+    const int reach = only ? 0 : kMostFrameOffset;
     for (const int frame : chosen ? *chosen : sequence->frames)
-        for (int away = -kMostFrameOffset; away <= kMostFrameOffset; ++away)
-            add_frame(*sequence, frame + away, files);
+        for (int away = -reach; away <= reach; ++away) add_frame(*sequence, frame + away, files);
     if (!sequence->whole.empty()) add_frame(*sequence, sequence->whole.front(), files);  // it decides for all
     add_profiles(*sequence, files);
     return files;
@@ -55,11 +56,19 @@ std::set<fs::path> files_of(const GoldenCase& test) {
 
 }  // namespace
 
+std::set<fs::path> capture_files(const GoldenCase& test, int frame) {
+    try {
+        return files_of(test, frame);
+    } catch (const std::exception&) {
+        return {};  // the worker reports it
+    }
+}
+
 std::string CaptureHasher::hash(const GoldenCase& test) {
     const std::scoped_lock lock(mutex_);
     try {
         std::string text;
-        for (const fs::path& file : files_of(test)) text += content_of(file) + "\n";
+        for (const fs::path& file : files_of(test, std::nullopt)) text += content_of(file) + "\n";
         return text.empty() ? "" : content_hash(text);
     } catch (const std::exception&) {
         return "";  // the worker tells it

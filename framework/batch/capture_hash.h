@@ -4,11 +4,16 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "framework/batch/golden_case.h"
 
 namespace aftershade {
+
+/// The capture's document, the profiles that may read it, and the files of this one frame; empty where the
+/// capture cannot be read.
+std::set<std::filesystem::path> capture_files(const GoldenCase& test, int frame);
 
 /// Remembers what it read: cases share captures. [thread-safe]
 class CaptureHasher {

@@ -60,9 +60,7 @@ public:
 
     /// "; the first pass whose result differs is 'dof.far' (lens.dof.far_color.0001)"; "" where none does.
     std::string text() {
-        std::vector<fs::path> folders(options_.effect_paths.begin(), options_.effect_paths.end());
-        folders.push_back(data_path() / "effects");
-        EffectRegistry effects(folders, data_path() / "glsl");
+        EffectRegistry effects(effect_folders(options_.effect_paths), data_path() / "glsl");
         const BoundCase bound = bind_case(tapped_, effects);
         for (const PipelineStep& step : bound.pipeline.steps) {
             const auto is_output = [&](const OutputSpec& output) {

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <list>
 #include <mutex>
+#include <utility>
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/input_files.h"
 #include "framework/base/side_file.h"
 #include "framework/batch/capture_hash.h"
+#include "framework/batch/case_trace.h"
 
 namespace aftershade {
 
@@ -70,14 +72,19 @@ public:
     Approver(const GoldenSuite& suite, const GoldenApproveOptions& options, GoldenApproval& approval)
         : options_(options), approval_(approval), inputs_(suite_inputs(suite, false)) {}
 
-    void take(GoldenCaseResult& result, const std::vector<RenderedImage>& images) {
+    void take(GoldenCaseResult& result, const TracedCase& traced, CaseTracer& tracer) {
         const std::scoped_lock lock(mutex_);
-        refuse(result, images);
+        refuse(result, traced.rendered.images);
         if (result.verdict != Verdict::same) return;
         std::error_code failure;
         fs::create_directories(result.test->goldens, failure);
         if (failure) throw Error(ErrorKind::output, result.test->goldens.string() + ": " + failure.message());
-        for (const RenderedImage& image : images) take(*result.test, image, result.sources);
+        for (const RenderedImage& image : traced.rendered.images) {
+            CaseOrigin origin = tracer.parts(*result.test, image.frame).origin;
+            if (const auto steps = traced.steps.find(image.frame); steps != traced.steps.end())
+                origin.steps = steps->second;
+            take(*result.test, image, result.sources, std::move(origin));
+        }
     }
     void commit() { staging_.commit(); }
 
@@ -102,10 +109,11 @@ private:
         }
     }
 
-    void take(const GoldenCase& test, const RenderedImage& image, const GoldenSources& sources) {
+    void take(const GoldenCase& test, const RenderedImage& image, const GoldenSources& sources,
+              CaseOrigin origin) {
         const GoldenEnvironment& own = options_.run.environment;
         const Approved approved = approved_images(test.goldens, image.name, own);
-        GoldenSidecar sidecar{own, options_.command, sources, "", "", ""};
+        GoldenSidecar sidecar{own, options_.command, sources, "", "", "", std::move(origin)};
         const auto equal = find_equal(approved, image);
         if (equal != approved.end()) {
             ++approval_.unchanged;
@@ -146,7 +154,8 @@ private:
             if (old.environment.equals(sidecar.environment) &&
                 old.environment.instructions == sidecar.environment.instructions &&
                 old.sources.look == sidecar.sources.look && old.sources.capture == sidecar.sources.capture &&
-                old.sources.program == sidecar.sources.program && old.image_hash == sidecar.image_hash)
+                old.sources.program == sidecar.sources.program && old.image_hash == sidecar.image_hash &&
+                old.origin == sidecar.origin)
                 return;
             // The picture is the one that was looked at then.
             sidecar.approver = old.approver;
@@ -211,6 +220,7 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
             prepare_output_folder(path_below(test->goldens, test->stem));
     const std::vector<std::string> looks = look_hashes(cases, options.run.render);
     CaptureHasher captures;
+    CaseTracer tracer(options.run.render, suite.folder());
     approval.cases.resize(cases.size());
     std::mutex telling;
     int done = 0;
@@ -222,13 +232,15 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
         if (interrupt) return;
         if (result.skipped.empty()) {
             result.sources.capture = captures.hash(*cases[i]);
-            const RenderedCase rendered = render_case(*cases[i], options.run.render, work, interrupt);
+            const TracedCase traced =
+                render_traced(*cases[i], tracer.taps(*cases[i]), options.run.render, work, interrupt);
+            const RenderedCase& rendered = traced.rendered;
             if (rendered.interrupted) return;
             result.skipped = rendered.absent;
             result.verdict = rendered.verdict;
             result.messages = rendered.messages;
             result.seconds = rendered.seconds;
-            if (result.verdict == Verdict::same) approver.take(result, rendered.images);
+            if (result.verdict == Verdict::same) approver.take(result, traced, tracer);
         }
         const std::scoped_lock lock(telling);
         if (listener) listener(result, ++done, int(cases.size()));

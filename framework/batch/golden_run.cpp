@@ -15,6 +15,7 @@
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/scratch_folder.h"
+#include "framework/batch/bound_case.h"
 #include "framework/batch/capture_hash.h"
 #include "framework/batch/determinism.h"
 #include "framework/batch/look_hash.h"
@@ -125,10 +126,8 @@ void for_each_in_folders(std::size_t count, int jobs,
 
 std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,
                                      const GoldenRenderOptions& options) {
-    std::vector<fs::path> folders(options.effect_paths.begin(), options.effect_paths.end());
-    const fs::path data = data_path();
-    folders.push_back(data / "effects");
-    LookHasher hasher(folders, data / "glsl", {options.plugin_paths.begin(), options.plugin_paths.end()});
+    LookHasher hasher(effect_folders(options.effect_paths), data_path() / "glsl",
+                      {options.plugin_paths.begin(), options.plugin_paths.end()});
     std::vector<std::string> hashes;
     for (const GoldenCase* test : cases) hashes.push_back(hasher.hash(*test));
     return hashes;

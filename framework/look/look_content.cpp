@@ -3,7 +3,6 @@
 #include <exception>
 #include <set>
 #include <sstream>
-#include <utility>
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
@@ -77,16 +76,20 @@ std::vector<fs::path> files_of_values(const PipelineStep& step) {
 
 }  // namespace
 
+std::set<fs::path> files_of_step(const PipelineStep& step, const fs::path& glsl_folder) {
+    const std::vector<fs::path> values = files_of_values(step);
+    std::set<fs::path> files(values.begin(), values.end());
+    try {
+        files.merge(files_of(*step.manifest, glsl_folder));
+    } catch (const std::exception&) {
+        // A shader that cannot be read is a fault of its effect, reported where it is compiled.
+    }
+    return files;
+}
+
 std::vector<fs::path> files_of_pipeline(const Pipeline& pipeline, const fs::path& glsl_folder) {
     std::set<fs::path> files;
-    for (const PipelineStep& step : pipeline.steps) {
-        for (fs::path& file : files_of_values(step)) files.insert(std::move(file));
-        try {
-            files.merge(files_of(*step.manifest, glsl_folder));
-        } catch (const std::exception&) {
-            // A shader that cannot be read is a fault of its effect, reported where it is compiled.
-        }
-    }
+    for (const PipelineStep& step : pipeline.steps) files.merge(files_of_step(step, glsl_folder));
     return {files.begin(), files.end()};
 }
 

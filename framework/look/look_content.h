@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace aftershade {
 /// include, native sources, pictures, tables and masks.
 std::vector<std::filesystem::path> files_of_pipeline(const Pipeline& pipeline,
                                                      const std::filesystem::path& glsl_folder);
+/// The same of one step.
+std::set<std::filesystem::path> files_of_step(const PipelineStep& step,
+                                              const std::filesystem::path& glsl_folder);
 
 /// The content of the files that the step's parameters and its mask name, and of scattering profiles.
 /// Throws Error(ErrorKind::usage) for a file that cannot be read.

@@ -49,7 +49,7 @@ using Words = std::vector<std::string>;
 TEST_F(Completion, OfBashOffersCommandsOptionsChoicesAndEffects) {
     EXPECT_EQ(bash_offers("aftershade ru"), Words{"run"});
     EXPECT_EQ(bash_offers("aftershade golden ''"),
-              (Words{"run", "approve", "report", "comment", "init", "serve", "apply-approvals"}));
+              (Words{"run", "approve", "report", "comment", "init", "explain", "serve", "apply-approvals"}));
     EXPECT_EQ(bash_offers("aftershade run --frame-t"), Words{"--frame-timeout"});
     EXPECT_EQ(bash_offers("aftershade golden run --jun"), Words{"--junit"});
     EXPECT_EQ(bash_offers("aftershade run look.json --alpha ''"), (Words{"keep", "opaque"}));

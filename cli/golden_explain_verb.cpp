@@ -1,0 +1,58 @@
+#include "cli/golden_explain_verb.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/golden_options.h"
+#include "cli/interrupt.h"
+#include "framework/base/text.h"
+#include "framework/batch/golden_explain.h"
+
+namespace aftershade::cli {
+
+namespace {
+
+struct ExplainOptions {
+    GoldenOptions golden;
+    std::string chosen;  ///< name, glob or tag
+};
+
+ExitCode explain(const ExplainOptions& options) {
+    const std::atomic<bool>& stop = watch_for_interrupt();
+    const GoldenSetup setup = prepare_golden(options.golden);
+    if (const std::string why = fault_of_filter(setup.suite, options.chosen); !why.empty())
+        throw CodedError(kCompareUsage, "'" + options.chosen + "' " + why);
+    std::vector<const GoldenCase*> cases;
+    for (const GoldenCase& test : setup.suite.cases)
+        if (fits_filter(test, {options.chosen})) cases.push_back(&test);
+    std::vector<GoldenExplanation> explanations(cases.size());
+    for_each_in_folders(
+        cases.size(), setup.context.options.jobs, [&](std::size_t i, const std::filesystem::path& work) {
+            if (!stop)
+                explanations[i] =
+                    explain_case(*cases[i], setup.context.options, setup.suite.folder(), work, stop);
+        });
+    if (stop) return ExitCode::interrupted;
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        std::cout << printable_lines(text_of(*cases[i], explanations[i]));
+    const bool explained = std::ranges::all_of(explanations, &GoldenExplanation::is_explained);
+    return explained ? ExitCode::done : ExitCode(int(Verdict::warning));
+}
+
+}  // namespace
+
+std::function<ExitCode()> add_golden_explain(CLI::App& golden) {
+    auto options = std::make_shared<ExplainOptions>();
+    auto* const verb = golden.add_subcommand(
+        "explain", "Print the first step of a case that differs, what of it has changed, and the commits");
+    verb->add_option("suite", options->golden.suite, "A golden.json or its folder")->required();
+    verb->add_option("case", options->chosen, "Name of the case; a glob or a tag for several")->required();
+    add_golden_drawing_options(*verb, options->golden);
+    return [options] { return explain(*options); };
+}
+
+}  // namespace aftershade::cli
