@@ -125,6 +125,7 @@ Verb add_check(CLI::App& app) {
                    "For a look: measure on this capture how many warm-up frames a chunk needs");
     app.add_flag("--strict", options->strict, "Treat warnings as faults");
     add_effect_path_option(app, options->effect_paths);
+    add_ocio_option(app);
     add_plugin_options(app, options->plugins);
     add_gl_options(app, options->gl);
     return [options] { return check(*options); };

@@ -16,9 +16,10 @@ namespace aftershade::cli {
 namespace {
 
 /// What the program reads from its environment.
-constexpr std::array<std::string_view, 8> kVariables{
-    "AFTERSHADE_ALLOW_PATH", "AFTERSHADE_BACKEND",   "AFTERSHADE_CACHE",       "AFTERSHADE_DATA",
-    "AFTERSHADE_DEVICE",     "AFTERSHADE_DRAW_WITH", "AFTERSHADE_PLUGIN_PATH", "AFTERSHADE_TRANSFERS"};
+constexpr std::array<std::string_view, 9> kVariables{
+    "AFTERSHADE_ALLOW_PATH",  "AFTERSHADE_BACKEND",   "AFTERSHADE_CACHE",
+    "AFTERSHADE_DATA",        "AFTERSHADE_DEVICE",    "AFTERSHADE_DRAW_WITH",
+    "AFTERSHADE_PLUGIN_PATH", "AFTERSHADE_TRANSFERS", "OCIO"};
 
 /// Words that a zero ends.
 std::vector<std::string> words_of(const char* file) {

@@ -11,6 +11,7 @@
 #include "cli/capture_options.h"
 #include "cli/command_tree.h"
 #include "cli/effect_options.h"
+#include "cli/ocio_names.h"
 #include "cli/profile_report.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
@@ -64,15 +65,16 @@ ExitCode describe(const DescribeOptions& options) {
     }
     const EffectManifest* manifest = effects.find(options.what, diagnostics);
     stop_at_errors(diagnostics);
-    diagnostics.print(std::cerr);
     if (!options.plot.empty()) {
         write_plot(profile_of(*manifest, diagnostics), options.plot);
         return ExitCode::done;
     }
-    fmt::print(
-        "{}{}",
-        options.json ? describe_json(*manifest) : printable_lines(describe_text(*manifest, options.verbose)),
-        options.json ? "\n" : "");
+    const auto names = ocio_names(*manifest, diagnostics);
+    diagnostics.print(std::cerr);
+    if (options.json) fmt::print("{}\n", with_ocio_names(describe_json(*manifest), names));
+    else
+        fmt::print("{}{}", printable_lines(describe_text(*manifest, options.verbose)),
+                   ocio_names_text(names));
     return ExitCode::done;
 }
 
@@ -85,6 +87,7 @@ Verb add_describe(CLI::App& app) {
         ->type_name(kEffectId)
         ->required();
     add_effect_path_option(app, options->effect_paths);
+    add_ocio_option(app);
     auto* json = app.add_flag("--json", options->json, "Print JSON");
     app.add_flag("-v,--verbose", options->verbose,
                  "Also print an effect's sources, textures, telemetry and passes");

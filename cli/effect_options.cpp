@@ -1,10 +1,13 @@
 #include "cli/effect_options.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <filesystem>
+#include <string>
 
 #include "framework/base/data_path.h"
 #include "framework/base/path_bounds.h"
+#include "framework/color/color_transform.h"
 
 namespace aftershade::cli {
 
@@ -13,6 +16,18 @@ void add_allow_path_option(CLI::App& app) {
            "--allow-path", [](const std::vector<std::string>& folders) { allow_folders(folders); },
            "Let links in effects, mesh buffers and goldens lead into this folder; repeatable")
         ->allow_extra_args(false);
+}
+
+void add_ocio_option(CLI::App& app) {
+    app.add_option_function<std::string>(
+        "--ocio",
+        [](const std::string& config) {
+            const bool is_path = !is_config_address(config);
+            if (std::error_code failure; is_path && !std::filesystem::is_regular_file(config, failure))
+                throw CLI::ValidationError("--ocio", "no file '" + config + "'");
+            setenv("OCIO", is_path ? std::filesystem::absolute(config).c_str() : config.c_str(), 1);
+        },
+        "OpenColorIO config of steps that name none (default: $OCIO, else the built-in one)");
 }
 
 void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths) {

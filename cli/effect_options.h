@@ -1,4 +1,4 @@
-// --effect-path and --allow-path, shared by every verb that looks for effects.
+// --effect-path, --allow-path and --ocio, shared by every verb that looks for effects.
 #pragma once
 
 #include <string>
@@ -15,6 +15,9 @@ namespace aftershade::cli {
 
 /// With --allow-path.
 void add_effect_path_option(CLI::App& app, std::vector<std::string>& paths);
+
+/// --ocio, for verbs that bind looks: sets $OCIO, for the processes that this one starts too.
+void add_ocio_option(CLI::App& app);
 
 /// A path that is not a folder is a fault.
 void check_effect_paths(const std::vector<std::string>& paths, Diagnostics& diagnostics);

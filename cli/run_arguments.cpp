@@ -69,6 +69,7 @@ void add_look_options(CLI::App& app, RunArguments& options) {
     app.add_option("--look-folder", options.look_folder,
                    "Resolve files named in the look in this folder (default: the look's own)");
     add_effect_path_option(app, options.effect_paths);
+    add_ocio_option(app);
     app.add_flag("--watch", options.watch,
                  "Keep running, and render again whenever the look, a manifest or a shader changes");
     app.add_option("--progress", options.progress,

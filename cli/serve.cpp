@@ -277,6 +277,7 @@ Verb add_serve(CLI::App& app) {
                  "Write no file: neither the look nor a shader, and no cache");
     add_capture_options(app, arguments->capture, "Frames to show, such as 1-24 (default: the capture's)");
     add_effect_path_option(app, arguments->effect_paths);
+    add_ocio_option(app);
     add_pass_timeout_option(app, arguments->limits);
     add_gl_options(app, arguments->gl);
     return [arguments] { return serve(*arguments); };

@@ -102,6 +102,7 @@ Verb add_warm(CLI::App& app) {
     add_capture_options(app, options->capture,
                         "The frame whose roles and size decide the programs (default: the first)");
     add_effect_path_option(app, options->effect_paths);
+    add_ocio_option(app);
     add_plugin_options(app, options->plugins);
     add_gl_options(app, options->gl);
     return [options] { return warm(*options); };

@@ -13,7 +13,7 @@ build_packages=(
     cmake ninja-build g++
     python3 python3-glad        # the GL loader is generated when configuring
     libopenexr-dev libimath-dev libglm-dev libstb-dev libfmt-dev nlohmann-json3-dev libcli11-dev libmurmurhash-dev
-    libtinygltf-dev libxxhash-dev zlib1g-dev libdeflate-dev
+    libtinygltf-dev libxxhash-dev zlib1g-dev libdeflate-dev libopencolorio-dev
 )
 # Opened at run time, so nothing pulls them in; without libgl1-mesa-dri EGL finds no driver.
 gl_packages=(libegl1 libegl-mesa0 libgl1-mesa-dri)
@@ -24,7 +24,7 @@ without_apt() {
     cat >&2 <<'TEXT'
 This system has no apt, so nothing is installed. Aftershade is built with: CMake 3.23, Ninja, GCC 12 or Clang 16, Python 3 with
 glad 2, and the headers of OpenEXR 3.1, Imath, glm, stb, fmt 9, nlohmann-json 3.11, CLI11 2.1, MurmurHash, tinygltf 2.5, xxHash,
-zlib and, for speed, libdeflate; or newer ones. It runs on OpenGL 4.5 through EGL (a GPU or Mesa's llvmpipe) or through OSMesa.
+zlib and, for speed, libdeflate, and for colour, OpenColorIO 2.1; or newer ones. It runs on OpenGL 4.5 through EGL (a GPU or Mesa's llvmpipe) or through OSMesa.
 Tests need GoogleTest.
 TEXT
 }

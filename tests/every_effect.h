@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/capture/capture.h"
+#include "framework/color/color_transform.h"
 #include "framework/document/units.h"
 #include "framework/effect/registry.h"
 #include "framework/gpu/context.h"
@@ -158,6 +159,9 @@ protected:
         Diagnostics diagnostics;
         manifest_ = registry().find(GetParam(), diagnostics);
         ASSERT_TRUE(manifest_) << faults_of(diagnostics);
+        for (const ParamSpec& spec : manifest_->params)
+            if (spec.file_kind == FileKind::ocio_config && !has_opencolorio())
+                GTEST_SKIP() << "SKIPPED: built without OpenColorIO";
         ASSERT_FALSE(backends().empty()) << "neither osmesa nor egl-software works on this machine";
     }
     const EffectManifest& manifest() const { return *manifest_; }

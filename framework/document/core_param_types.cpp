@@ -6,7 +6,7 @@ namespace aftershade {
 std::span<const ParamType> core_param_types() {
     static constexpr ParamType types[] = {
         kFloatParam, kIntParam,  kBoolParam,  kEnumParam, kAngleParam, kColorParam,   kVec2Param,
-        kVec3Param,  kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam,
+        kVec3Param,  kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam, kTextParam,
     };
     return types;
 }

@@ -21,7 +21,7 @@ namespace aftershade {
 
 struct ParamTypeTraits;
 extern const ParamTypeTraits kFloatParam, kIntParam, kBoolParam, kEnumParam, kAngleParam, kColorParam,
-    kVec2Param, kVec3Param, kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam;
+    kVec2Param, kVec3Param, kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam, kTextParam;
 
 /// One of the types that a table lists (core_param_types()); framework/document/param_type.h has what a type
 /// is. The named ones are those that code means by themselves. [value type]
@@ -34,6 +34,7 @@ public:
 
     static const ParamType float_, int_, bool_, enum_, angle, color, vec2, vec3, vec4, curve, file, table;
     static const ParamType objects;  ///< which objects: a list of ids, ranges of ids and names; empty for all
+    static const ParamType text;     ///< a word for the host alone
 
 private:
     const ParamTypeTraits* traits_;
@@ -43,7 +44,7 @@ inline constexpr ParamType ParamType::float_{kFloatParam}, ParamType::int_{kIntP
     ParamType::bool_{kBoolParam}, ParamType::enum_{kEnumParam}, ParamType::angle{kAngleParam},
     ParamType::color{kColorParam}, ParamType::vec2{kVec2Param}, ParamType::vec3{kVec3Param},
     ParamType::vec4{kVec4Param}, ParamType::curve{kCurveParam}, ParamType::file{kFileParam},
-    ParamType::table{kTableParam}, ParamType::objects{kObjectsParam};
+    ParamType::table{kTableParam}, ParamType::objects{kObjectsParam}, ParamType::text{kTextParam};
 
 /// The types that need only core, in the order of messages and schemas. [thread-safe]
 std::span<const ParamType> core_param_types();
@@ -92,12 +93,13 @@ private:
 };
 
 /// float_ and angle hold a double, in the declared unit; color and vec2..4 hold that many doubles; enum_ a
-/// string; file a path, "" for none; objects a table of one column, 1 for what is listed.
+/// string; text likewise; file a path, "" for none; objects a table of one column, 1 for what is listed.
 using ParamValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, CurveValue,
                                 TableValue, OpaqueValue>;
 
-/// The file of a file parameter: a picture (EXR, PNG, JPEG), or a colour table (.cube, Adobe Cube LUT 1.0).
-enum class FileKind { image, lut };
+/// The file of a file parameter: a picture (EXR, PNG, JPEG), a colour table (.cube, Adobe Cube LUT 1.0), or
+/// one that OpenColorIO reads: a config, for which "" is the user's own, or a transform.
+enum class FileKind { image, lut, ocio_config, ocio_transform };
 
 /// "requires": ["> focal_length"]: how this value stands to another parameter's, units minded.
 struct ParamRelation {
@@ -131,6 +133,7 @@ struct ParamSpec {
     FileKind file_kind = FileKind::image;  ///< file
     bool warn_if_empty = false;   ///< objects: an empty list, which means all of them, is likely a slip
     std::string per_metre;        ///< scattering_profile: the parameter that has its mm for each metre
+    std::string ocio;             ///< text, bool: the part of the effect's OpenColorIO transform that it says
     bool file_is_data = false;    ///< image, "space": "data": a PNG's numbers as they are stored
     bool file_is_linear = false;  ///< image, "filter": "linear": read between its texels
     std::array<double, 2> domain = {0.0, 1.0};  ///< curve: the range of x
@@ -145,6 +148,8 @@ bool is_block_type(ParamType type);
 bool is_scalar_type(ParamType type);
 /// Names a file, which the host reads.
 bool is_file_type(ParamType type);
+/// A file from which OpenColorIO makes a transform, with the effect's parameters that have an `ocio`.
+bool is_ocio_file(const ParamSpec& spec);
 /// Reaches shaders through a texture for any value; a file parameter only if it has a file.
 bool is_param_texture(ParamType type);
 /// Reaches shaders through a storage block, looked up by object.

@@ -76,6 +76,11 @@ bool is_file_type(ParamType type) {
     return type->home == ParamHome::file;
 }
 
+bool is_ocio_file(const ParamSpec& spec) {
+    return is_file_type(spec.type) &&
+           (spec.file_kind == FileKind::ocio_config || spec.file_kind == FileKind::ocio_transform);
+}
+
 bool is_param_texture(ParamType type) {
     return type->texture.size != nullptr;
 }

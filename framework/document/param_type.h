@@ -48,7 +48,8 @@ struct SpecReader {
 enum class ParamHome {
     block,     ///< as a member of the block `param`, or as a define; as a table's cell
     resource,  ///< through a texture, a storage block or both
-    file       ///< the host makes a texture of the file that the value names
+    file,      ///< the host makes a texture of the file that the value names
+    host       ///< not at all: the host reads it
 };
 
 struct TexelSize {

@@ -21,6 +21,11 @@ ParamTexture image_texture(const Image& image) {
     return {image.width(), image.height(), 1, gpu::TextureFormat::rgba32f, {texels.begin(), texels.end()}};
 }
 
+ParamTexture table_texture(const ColorTransform& transform) {
+    const int rows = int(transform.texels.size() / (std::size_t(kLutRow) * 4));
+    return {kLutRow, rows, 1, gpu::TextureFormat::rgba32f, transform.texels};
+}
+
 ParamTexture lut_texture(const Lut& lut) {
     ParamTexture texture;
     const bool is_cube = lut.dimensions == 3;
@@ -139,7 +144,7 @@ std::string without_path(const std::string& message, const std::string& path) {
 
 std::optional<ParamFile> load_param_file(const ParamSpec& spec, const std::filesystem::path& path,
                                          Diagnostics& diagnostics) {
-    assert(is_file_type(spec.type));
+    assert(is_file_type(spec.type) && !is_ocio_file(spec));
     if (path.empty()) return ParamFile{};
     if (spec.file_kind == FileKind::lut) {
         auto lut = read_lut(path, diagnostics);
@@ -166,6 +171,7 @@ ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value) {
 ParamTexture file_texture(const ParamFile& file) {
     assert(file.index() != 0);
     if (const auto* lut = std::get_if<Lut>(&file)) return lut_texture(*lut);
+    if (const auto* transform = std::get_if<ColorTransform>(&file)) return table_texture(*transform);
     return image_texture(std::get<Image>(file));
 }
 

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "framework/color/color_transform.h"
 #include "framework/document/param.h"
 #include "framework/gpu/texture.h"
 #include "framework/image/image.h"
@@ -26,16 +27,16 @@ struct ParamTexture {
     std::vector<float> texels;  ///< layer after layer, rows from the top, channels interleaved
 };
 
-/// The content of a file parameter's path; none for "".
-using ParamFile = std::variant<std::monostate, Image, Lut>;
+/// The content of a file parameter's path; none for "", but a config's "" is the user's.
+using ParamFile = std::variant<std::monostate, Image, Lut, ColorTransform>;
 
 /// Reads the file of a file parameter; "" is none. Relative paths are the caller's to resolve. nullopt after
-/// faults, which name the file (and a LUT's lines).
+/// faults, which name the file (and a LUT's lines). One with is_ocio_file() is not for this function.
 std::optional<ParamFile> load_param_file(const ParamSpec& spec, const std::filesystem::path& path,
                                          Diagnostics& diagnostics);
 
 /// Texels in a row of a 1-D LUT: its most samples, 65536, are more than a side of a texture may have.
-inline constexpr int kLutRow = 4096;
+inline constexpr int kLutRow = kColorTableRow;
 
 /// The GLSL that declares the sampler of a parameter at `binding` and the function or the names to read it,
 /// each on its own line:
@@ -43,6 +44,7 @@ inline constexpr int kLutRow = 4096;
 ///     curve   float falloff(float x)            x clamped to the domain
 ///     image   sampler2D stain, stain_size       vec4(w, h, 1/w, 1/h); HAS_STAIN
 ///     lut     vec3 grade(vec3 rgb)              clamped to its domain, tetrahedral; HAS_GRADE
+///     ocio    vec3 view(vec3 rgb)               what OpenColorIO makes; HAS_VIEW
 ///
 /// "" for a file parameter without a file. For a LUT the text has size, dimension and domain, so that it
 /// differs between LUTs of different shape.
@@ -62,8 +64,8 @@ std::string param_table_glsl(const ParamSpec& spec, int binding, bool has_rows =
 gpu::TextureFormat param_texture_format(int channels);
 /// The texels that its type makes of a value. There must be a texture of that type: is_param_texture().
 ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value);
-/// rgba32f. There must be a file. A 3-D LUT has blue for its layer, green its row; a 1-D one is laid out in
-/// rows of kLutRow.
+/// rgba32f. There must be a file. OpenColorIO's has rows of kLutRow. A 3-D LUT has blue for its layer, green
+/// its row; a 1-D one is laid out in rows of kLutRow.
 ParamTexture file_texture(const ParamFile& file);
 
 /// The id of an object by its name; nullopt for a name that does not exist.

@@ -82,6 +82,11 @@ std::string lut_glsl(const ParamSpec& spec, const Lut& lut, int binding) {
                                                           {"position", position}});
 }
 
+std::string transform_glsl(const ParamSpec& spec, const ColorTransform& transform, int binding) {
+    return "#define HAS_" + upper_case(spec.name) + " 1\nlayout(binding = " + std::to_string(binding) +
+           ") uniform sampler2D " + spec.name + "_table;\n" + transform.glsl;
+}
+
 /// Looks for the first entry that ends at the id or beyond it.
 constexpr std::string_view kTable = R"($defines
 struct $row {
@@ -140,6 +145,8 @@ std::string table_glsl(const ParamSpec& spec, const std::string& function, int b
 std::string param_sampler_glsl(const ParamSpec& spec, const ParamFile& file, int binding) {
     if (is_param_texture(spec.type)) return spec.type->texture.glsl(spec, binding);
     if (const auto* lut = std::get_if<Lut>(&file)) return lut_glsl(spec, *lut, binding);
+    if (const auto* transform = std::get_if<ColorTransform>(&file))
+        return transform_glsl(spec, *transform, binding);
     return std::holds_alternative<Image>(file) ? image_glsl(spec, binding) : "";
 }
 

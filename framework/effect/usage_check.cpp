@@ -199,7 +199,7 @@ private:
         if (manifest_.native) return;  // its library may be all that uses a parameter
         const std::set<std::string> counted = named_by_manifest();
         for (const ParamSpec& spec : manifest_.params) {
-            if (counted.contains(spec.name)) continue;
+            if (counted.contains(spec.name) || !spec.ocio.empty()) continue;
             if (!is_block_type(spec.type)) {
                 if (!any_begins(spec.name)) unused_param(spec, spec.name);
             } else if (spec.bind == ParamBind::define) {

@@ -8,6 +8,7 @@
 #include "framework/base/error.h"
 #include "framework/document/param_type.h"
 #include "framework/effect/shader_source.h"
+#include "framework/look/color_requests.h"
 
 namespace aftershade {
 
@@ -68,8 +69,14 @@ std::vector<fs::path> files_of_values(const PipelineStep& step) {
     std::vector<fs::path> files;
     for (const ParamSpec& spec : step.manifest->params)
         for (const ParamValue& value : step.known_values(spec))
-            if (is_file_type(spec.type) && !std::get<std::string>(value).empty())
+            if (is_file_type(spec.type) && !is_ocio_file(spec) && !std::get<std::string>(value).empty())
                 files.emplace_back(std::get<std::string>(value));
+    for (const StepColorRequest& asked : color_requests(step)) {
+        const auto made = make_color_transform(asked.request);
+        if (const auto* transform = std::get_if<ColorTransform>(&made))
+            files.insert(files.end(), transform->files.begin(), transform->files.end());
+        else if (!asked.request.path.empty()) files.emplace_back(asked.request.path);
+    }
     if (step.mask && !step.mask->file.empty()) files.push_back(step.mask->file);
     return files;
 }

@@ -6,6 +6,7 @@
 #include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/capture/channel_names.h"
+#include "framework/color/color_transform.h"
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"
@@ -158,7 +159,7 @@ int Pipeline::last_accumulating_step() const {
 ParamValue with_file(const ParamSpec& spec, ParamValue value, const std::filesystem::path& folder) {
     if (!is_file_type(spec.type)) return value;
     auto& path = std::get<std::string>(value);
-    if (!path.empty()) path = (folder / path).string();
+    if (!path.empty() && !is_config_address(path)) path = (folder / path).string();
     return value;
 }
 

@@ -8,6 +8,7 @@
 #include "framework/document/units.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
+#include "framework/look/color_requests.h"
 #include "framework/look/pipeline.h"
 #include "framework/look/wiring.h"
 
@@ -112,6 +113,11 @@ public:
         }
     }
 
+    void check_colors() {
+        for (const PipelineStep& step : pipeline_.steps)
+            check_color_requests(step, step_places_[step.name], diagnostics_);
+    }
+
     Pipeline take() { return std::move(pipeline_); }
 
 private:
@@ -145,6 +151,7 @@ private:
         }
         PipelineStep step;
         step.name = look_step.name;
+        step_places_[step.name] = look_step.effect_place;
         step.manifest = effects_.find(effect, diagnostics_, look_step.space.value_or(IsfSpace::display));
         if (!step.manifest) return std::nullopt;
         if (look_step.space && !effects_.is_isf(effect))
@@ -301,7 +308,7 @@ private:
         const auto complete = [&](ParamValue& file) {
             file = with_file(*spec, std::move(file), folder);
             const auto& path = std::get<std::string>(file);
-            if (!path.empty())
+            if (!path.empty() && !is_config_address(path))
                 check_file(path, step.name + "." + name + ": ", value.place, spec->file_is_data);
         };
         auto* literal = std::get_if<ParamValue>(&*parsed);
@@ -368,6 +375,7 @@ private:
     EffectRegistry& effects_;
     Diagnostics& diagnostics_;
     Pipeline pipeline_;
+    std::map<std::string, Place> step_places_;
     std::map<std::string, Absence> absent_;  // steps of the look that are not in the pipeline
 };
 
@@ -381,6 +389,7 @@ Pipeline bind_pipeline(const Look& look, EffectRegistry& effects, const Pipeline
     for (const ValueOverride& value : options.overrides) binder.apply_override(value);
     for (const std::string& text : options.taps) binder.add_tap(text);
     binder.check_relations_of_literals();
+    if (!diagnostics.has_errors()) binder.check_colors();
     return binder.take();
 }
 

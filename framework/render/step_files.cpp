@@ -1,24 +1,47 @@
 #include "framework/render/step_files.h"
 
+#include <optional>
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/effect/color_param.h"
 #include "framework/file/picture.h"
 
 namespace aftershade {
 
+namespace {
+
+std::optional<ParamFile> load_transform(const PipelineStep& step, const ParamSpec& file,
+                                        const std::map<std::string, ParamValue>& values,
+                                        Diagnostics& faults) {
+    const auto request =
+        color_request(*step.manifest, file, [&](const ParamSpec& spec) { return values.at(spec.name); });
+    if (!request) return ParamFile{};
+    auto made = make_color_transform(*request);
+    if (auto* transform = std::get_if<ColorTransform>(&made)) return std::move(*transform);
+    const auto& fault = std::get<ColorFault>(made);
+    faults.error({}, step.name + "." + param_at_fault(*step.manifest, file, fault).name + ": " + fault.text);
+    return std::nullopt;
+}
+
+}  // namespace
+
 const std::map<std::string, ParamFile>& StepFiles::of_step(int index, const PipelineStep& step,
                                                            const ParamReader& params) {
-    std::map<std::string, std::string> paths;
+    std::map<std::string, ParamValue> values;
     for (const ParamSpec& spec : step.manifest->params)
-        if (is_file_type(spec.type)) paths[spec.name] = std::get<std::string>(params.get(spec.name));
+        if (is_file_type(spec.type) || is_color_part(spec)) values[spec.name] = params.get(spec.name);
     const auto known = steps_.find(index);
-    if (known != steps_.end() && known->second.paths == paths) return known->second.files;
-    Loaded loaded{paths, {}};
+    if (known != steps_.end() && known->second.values == values) return known->second.files;
+    Loaded loaded{values, {}};
     Diagnostics faults;
-    for (const auto& [name, path] : paths)
-        if (auto file = load_param_file(*step.manifest->find_param(name), path, faults))
-            loaded.files[name] = std::move(*file);
+    for (const ParamSpec& spec : step.manifest->params) {
+        if (!is_file_type(spec.type)) continue;
+        auto file = is_ocio_file(spec)
+                        ? load_transform(step, spec, values, faults)
+                        : load_param_file(spec, std::get<std::string>(values[spec.name]), faults);
+        if (file) loaded.files[spec.name] = std::move(*file);
+    }
     if (faults.has_errors()) throw Error(ErrorKind::usage, faults);
     return (steps_[index] = std::move(loaded)).files;
 }

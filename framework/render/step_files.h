@@ -22,7 +22,7 @@ public:
 
 private:
     struct Loaded {
-        std::map<std::string, std::string> paths;
+        std::map<std::string, ParamValue> values;  ///< that the files depend on
         std::map<std::string, ParamFile> files;
     };
     std::map<int, Loaded> steps_;

@@ -159,7 +159,7 @@ const std::vector<BrokenSpec> kBrokenSpecs = {
      {"doc.json:1:1: error: parameter 'p' has no 'type'", "doc.json:1:1: error: parameter 'p' has no 'doc'"}},
     {R"({"type": "flaot", "default": 1, "doc": "."})",
      {"doc.json:1:10: error: 'type' is 'flaot' but must be 'float', 'int', 'bool', 'enum', 'angle', 'color', "
-      "'vec2', 'vec3', 'vec4', 'curve', 'file', 'table' or 'objects'; did you mean 'float'?"}},
+      "'vec2', 'vec3', 'vec4', 'curve', 'file', 'table', 'objects' or 'text'; did you mean 'float'?"}},
     {R"({"type": "float", "unit": "mn", "default": 1, "doc": "."})",
      {"doc.json:1:27: error: 'unit' is 'mn' but must be 'um', 'mm', 'cm', 'm', 'km', 'in', 'ft', 'deg', "
       "'rad', "

@@ -1,9 +1,20 @@
+#include "framework/document/grammar.h"
 #include "framework/document/param_type.h"
 #include "framework/document/schema_pieces.h"
 
 namespace aftershade {
 
 namespace bool_type {
+
+void declare(grammar::Block& declaration, const grammar::Block&) {
+    declaration.keys.push_back(
+        grammar::optional("ocio", grammar::choice({"inverse"}),
+                          "The part of the effect's OpenColorIO transform that it says."));
+}
+
+void read_declaration(const SpecReader& reader, ParamSpec& spec) {
+    if (const Node* const part = reader.node.find("ocio")) spec.ocio = part->string;
+}
 
 std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
     if (node.kind != Node::Kind::boolean) return reader.wrong_kind(node, "true or false");
@@ -31,6 +42,8 @@ constexpr ParamTypeTraits type() {
     traits.name = "bool";
     traits.glsl_type = "bool";
     traits.is_integer = true;
+    traits.declare = declare;
+    traits.read_declaration = read_declaration;
     traits.parse = parse;
     traits.schema = literal;
     traits.numbers = numbers;

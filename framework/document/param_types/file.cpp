@@ -1,4 +1,5 @@
-// The path of a file: a picture or a colour table. What is in it the host reads.
+// The path of a file: a picture, a colour table or what OpenColorIO reads. What is in it the host reads.
+#include <algorithm>
 #include <filesystem>
 
 #include "framework/base/text.h"
@@ -12,20 +13,39 @@ namespace file_type {
 
 void declare(grammar::Block& declaration, const grammar::Block&) {
     declaration.keys.push_back(
-        grammar::required("kind", grammar::choice({"image", "lut"}), "A picture, or a table of colours."));
+        grammar::required("kind", grammar::choice({"image", "lut", "ocio_config", "ocio_transform"}),
+                          "A picture, a table of colours, or a config or a transform of OpenColorIO."));
     declaration.keys.push_back(grammar::optional("space", grammar::choice({"srgb", "data"}),
                                                  "Encoding of a PNG's values.", "\"srgb\""));
     declaration.keys.push_back(grammar::optional("filter", grammar::choice({"nearest", "linear"}),
                                                  "Filter of `texture()` between texels.", "\"nearest\""));
-    declaration.rules.push_back(
-        grammar::when({.key = "kind",
-                       .value = "\"lut\"",
-                       .absent = {"space", "filter"},
-                       .fault = "only a file of kind image has a 'space' or a 'filter'"}));
+    for (const char* kind : {"\"lut\"", "\"ocio_config\"", "\"ocio_transform\""})
+        declaration.rules.push_back(
+            grammar::when({.key = "kind",
+                           .value = kind,
+                           .absent = {"space", "filter"},
+                           .fault = "only a file of kind image has a 'space' or a 'filter'"}));
+}
+
+struct KindWords {
+    FileKind kind;
+    const char* name;  ///< as manifests spell it
+    const char* text;  ///< for people
+};
+constexpr KindWords kKinds[] = {
+    {FileKind::image, "image", "file: EXR, PNG or JPEG"},
+    {FileKind::lut, "lut", "file: .cube"},
+    {FileKind::ocio_config, "ocio_config", "file: OpenColorIO config"},
+    {FileKind::ocio_transform, "ocio_transform", "file: transform for OpenColorIO"}};
+
+const KindWords& words_of(const ParamSpec& spec) {
+    return *std::ranges::find(kKinds, spec.file_kind, &KindWords::kind);
 }
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    if (reader.node.find("kind")->string == "lut") spec.file_kind = FileKind::lut;
+    const std::string& kind_name = reader.node.find("kind")->string;
+    for (const KindWords& words : kKinds)
+        if (words.name == kind_name) spec.file_kind = words.kind;
     const Node* space = reader.node.find("space");
     spec.file_is_data = space && space->string == "data";
     const Node* filter = reader.node.find("filter");
@@ -53,16 +73,17 @@ schema::json literal(const ParamSpec&, const schema::LiteralParts&) {
 }
 
 std::string type_text(const ParamSpec& spec) {
-    return spec.file_kind == FileKind::lut ? "file: .cube" : "file: EXR, PNG or JPEG";
+    return words_of(spec).text;
 }
 
 std::string default_text(const ParamSpec& spec) {
     const auto& path = std::get<std::string>(spec.default_value);
-    return path.empty() ? "none" : json_string(path);
+    if (!path.empty()) return json_string(path);
+    return spec.file_kind == FileKind::ocio_config ? "the one of $OCIO, else the built-in one" : "none";
 }
 
 schema::json describe(const ParamSpec& spec) {
-    return {{"kind", spec.file_kind == FileKind::lut ? "lut" : "image"}};
+    return {{"kind", words_of(spec).name}};
 }
 
 constexpr ParamTypeTraits type() {

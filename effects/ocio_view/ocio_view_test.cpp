@@ -1,0 +1,147 @@
+// Views against OpenColorIO's own CPU processor, and what is said of configs that cannot give one.
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/look_runner.h"
+#include "tests/ocio_oracle.h"
+#include "tests/scoped_variable.h"
+#include "tests/synthetic_capture.h"
+
+namespace aftershade::test::ocio_view {
+namespace {
+
+/// The message of a look that has one step with these params; "" where it is sound.
+std::string fault_of(const std::string& params) {
+    try {
+        run_step("ocio_view", make_capture({.width = 4, .height = 4}), params);
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "";
+}
+
+#ifdef AFTERSHADE_HAS_OPENCOLORIO
+
+using namespace colors;
+
+std::string params_of(const std::string& config, const std::string& display, const std::string& view,
+                      const std::string& more = "") {
+    return R"("config": ")" + config + R"(", "display": ")" + display + R"(", "view": ")" + view + "\"" +
+           more;
+}
+
+TEST(OcioView, EqualsOpenColorIosProcessorForEveryViewOfTheBuiltInConfig) {
+    const auto config = StudioConfig::builtin();
+    const Image light = test_light();
+    int views = 0;
+    for (int d = 0; d < config->getNumDisplays(); ++d) {
+        const std::string display = config->getDisplay(d);
+        for (int v = 0; v < config->getNumViews(display.c_str()); ++v, ++views) {
+            const std::string view = config->getView(display.c_str(), v);
+            const auto transform = ocio::DisplayViewTransform::Create();
+            transform->setSrc("lin_rec709");
+            transform->setDisplay(display.c_str());
+            transform->setView(view.c_str());
+            const bool is_raw = view == "Raw";
+            const Image image =
+                drawn("ocio_view", light,
+                      params_of("", display, view, is_raw ? R"(, "source": "lin_rec709")" : ""), "display");
+            EXPECT_LT(largest_error(image, by_cpu(light, config->getProcessor(transform)), Measure::display),
+                      kDisplayLimit)
+                << display << ", " << view;
+        }
+    }
+    EXPECT_EQ(views, 9);
+}
+
+TEST(OcioView, EqualsOpenColorIosProcessorForAViewByALutAndForLooks) {
+    const StudioConfig studio;
+    const auto config = studio.config();
+    const Image light = test_light();
+    const Image film = drawn("ocio_view", light, params_of(studio.path(), "Monitor", "Film"), "display");
+    EXPECT_LT(
+        largest_error(film, by_cpu(light, config->getProcessor("lin_rec709", "cube")), Measure::display),
+        kDisplayLimit);
+    const auto look = ocio::LookTransform::Create();
+    look->setSrc("lin_rec709");
+    look->setDst("cube");
+    look->setLooks("+warm");
+    const Image warm = drawn("ocio_view", light,
+                             params_of(studio.path(), "Monitor", "Film", R"(, "looks": "+warm")"), "display");
+    EXPECT_LT(largest_error(warm, by_cpu(light, config->getProcessor(look)), Measure::display),
+              kDisplayLimit);
+    EXPECT_GT(largest_error(warm, film, Measure::display), 0.01);
+}
+
+TEST(OcioView, ExposesBeforeTheViewAndRaisesAfterIt) {
+    const auto value = [](float light, const std::string& params) {
+        const Capture capture = make_capture({.width = 4, .height = 4, .background = {light, light, light}});
+        return run_step("ocio_view", capture, params).images.at("display").at(1, 1, 1);
+    };
+    const float plain = value(0.36f, "");
+    EXPECT_NEAR(value(0.09f, R"("exposure": 2)"), plain, 1e-5);
+    EXPECT_NEAR(value(0.36f, R"("gamma": 2)"), std::sqrt(plain), 1e-5);
+}
+
+TEST(OcioView, TakesTheConfigOfTheVariableWhereTheLookNamesNone) {
+    const StudioConfig studio;
+    ScopedVariable variable("OCIO");
+    variable.set(studio.path());
+    EXPECT_EQ(fault_of(R"("display": "Monitor")"), "");
+    EXPECT_NE(fault_of(R"("display": "Wall")").find("of $OCIO has no display 'Wall'"), std::string::npos);
+}
+
+TEST(OcioView, SaysWhichNameTheConfigLacksAndWhereItIsWritten) {
+    const StudioConfig studio;
+    const std::string view = fault_of(params_of(studio.path(), "Monitor", "Flim"));
+    EXPECT_NE(view.find("test look:1:"), std::string::npos) << view;
+    EXPECT_NE(view.find("ocio_view.view: "), std::string::npos) << view;
+    EXPECT_NE(view.find("has no view 'Flim'; did you mean 'Film'?"), std::string::npos) << view;
+    EXPECT_NE(fault_of(R"("source": "lin_rec708")").find("no color space or role 'lin_rec708'"),
+              std::string::npos);
+    EXPECT_NE(fault_of(R"("looks": "+grade")").find("no look 'grade'"), std::string::npos);
+    EXPECT_NE(fault_of(R"("config": "absent.ocio")").find("no file 'absent.ocio'"), std::string::npos);
+    const std::string address = fault_of(R"("config": "ocio://none")");
+    EXPECT_NE(address.find("the config 'ocio://none' cannot be used"), std::string::npos) << address;
+}
+
+TEST(OcioView, RefusesConfigsAndLutsThatAreBrokenOrLieElsewhere) {
+    const StudioConfig studio;
+    const std::string params = params_of(studio.path(), "Monitor", "Film");
+    write_text(studio.folder() / "luts/cube.cube", "LUT_3D_SIZE 17\n0 0\n");
+    EXPECT_NE(fault_of(params).find("cube.cube"), std::string::npos) << fault_of(params);
+    std::filesystem::remove(studio.folder() / "luts/cube.cube");
+    EXPECT_NE(fault_of(params).find("cube.cube"), std::string::npos) << fault_of(params);
+    write_text(studio.folder() / "bad.ocio", "displays: [");
+    EXPECT_NE(fault_of(params_of(studio.folder() / "bad.ocio", "", "")).find("bad.ocio' cannot be used"),
+              std::string::npos);
+    const TemporaryFolder elsewhere;
+    write_text(elsewhere / "far.cube", "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n");
+    const auto config = studio.config()->createEditableCopy();
+    const auto far_away = ocio::FileTransform::Create();
+    far_away->setSrc(("../../" + elsewhere.path().filename().string() + "/far.cube").c_str());
+    const auto space = ocio::ColorSpace::Create();
+    space->setName("far");
+    space->setTransform(far_away, ocio::COLORSPACE_DIR_FROM_REFERENCE);
+    config->addColorSpace(space);
+    config->addDisplayView("Monitor", "Far", "far", "");
+    std::ofstream(studio.folder() / "far.ocio") << *config;
+    const std::string fault = fault_of(params_of(studio.folder() / "far.ocio", "Monitor", "Far"));
+    EXPECT_NE(fault.find("lies outside of its folder and its search path"), std::string::npos) << fault;
+}
+
+#else
+
+TEST(OcioView, SaysWhatToInstallWhereTheLibraryIsAbsent) {
+    EXPECT_NE(fault_of("").find("libopencolorio-dev"), std::string::npos) << fault_of("");
+}
+
+#endif
+
+}  // namespace
+}  // namespace aftershade::test::ocio_view

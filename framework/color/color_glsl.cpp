@@ -1,0 +1,97 @@
+#include "framework/color/color_glsl.h"
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <string_view>
+
+#include "framework/color/color_transform.h"
+#include "framework/document/glsl_text.h"
+
+namespace aftershade {
+
+namespace {
+
+constexpr std::string_view kTexel = R"(vec3 $texel(int i) {
+    return texelFetch($table, ivec2((i + $first) % $row, (i + $first) / $row), 0).rgb;
+}
+)";
+
+/// A curve: `at` as texture() takes it, so the sample lies at the middle of its texel.
+constexpr std::string_view kCurve = R"(vec3 $curve(float x, int row) {
+    float place = clamp(x * $width.0 - 0.5, 0.0, $width.0 - 1.0);
+    int i = min(int(place), $width - 2);
+    return mix($texel(row * $width + i), $texel(row * $width + i + 1), place - float(i));
+}
+vec3 $at(float x) { return $curve(x, 0); }
+vec3 $at(vec2 at) { return $curve(at.x, int(at.y * $height.0)); }
+)";
+
+constexpr std::string_view kCube = R"(vec3 $at(vec3 at) {
+    vec3 place = clamp(at * $width.0 - 0.5, 0.0, $width.0 - 1.0);
+    ivec3 i = min(ivec3(place), ivec3($width - 2));
+    vec3 f = place - vec3(i);
+    int low = i.x + $width * (i.y + $width * i.z);
+$between}
+)";
+
+constexpr std::string_view kTrilinear = R"(    vec3 a = mix($texel(low), $texel(low + 1), f.x);
+    vec3 b = mix($texel(low + $width), $texel(low + $width + 1), f.x);
+    vec3 c = mix($texel(low + $layer), $texel(low + $layer + 1), f.x);
+    vec3 d = mix($texel(low + $layer + $width), $texel(low + $layer + $width + 1), f.x);
+    return mix(mix(a, b, f.y), mix(c, d, f.y), f.z);
+)";
+
+/// As param_resources_glsl.cpp has it, with its source: first along the largest fraction, then the middle
+/// one.
+constexpr std::string_view kTetrahedral = R"(    bool xy = f.x >= f.y, yz = f.y >= f.z, xz = f.x >= f.z;
+    int one = xy && xz ? 1 : yz && !xy ? $width : $layer;
+    int two = yz && xz ? 1 + $width : xy && !yz ? 1 + $layer : $width + $layer;
+    float high = max(max(f.x, f.y), f.z), least = min(min(f.x, f.y), f.z);
+    float middle = max(min(f.x, f.y), min(max(f.x, f.y), f.z));
+    return (1.0 - high) * $texel(low) + (high - middle) * $texel(low + one)
+        + (middle - least) * $texel(low + two) + least * $texel(low + 1 + $width + $layer);
+)";
+
+std::string functions_of(const ShaderLut& lut, const std::string& table, std::size_t first) {
+    const std::map<std::string, std::string> values = {{"texel", lut.sampler + "_texel"},
+                                                       {"curve", lut.sampler + "_between"},
+                                                       {"at", lut.sampler + "_at"},
+                                                       {"table", table},
+                                                       {"first", std::to_string(first)},
+                                                       {"row", std::to_string(kColorTableRow)},
+                                                       {"width", std::to_string(lut.width)},
+                                                       {"height", std::to_string(lut.height)},
+                                                       {"layer", std::to_string(lut.width * lut.width)}};
+    std::string text = filled(kTexel, values);
+    if (lut.dimensions < 3) return text + filled(kCurve, values);
+    auto cube = values;
+    cube["between"] = filled(lut.is_tetrahedral ? kTetrahedral : kTrilinear, values);
+    return text + filled(kCube, cube);
+}
+
+void append_texels(const ShaderLut& lut, std::vector<float>& texels) {
+    const std::size_t channels = std::size_t(lut.channels);
+    for (std::size_t i = 0; i < lut.values.size(); i += channels) {
+        for (std::size_t c = 0; c < 3; ++c) texels.push_back(lut.values[i + std::min(c, channels - 1)]);
+        texels.push_back(1);
+    }
+}
+
+}  // namespace
+
+std::string glsl_with_table(std::string text, const std::vector<ShaderLut>& luts, const std::string& table,
+                            std::vector<float>& texels) {
+    std::string functions;
+    for (const ShaderLut& lut : luts) {
+        functions += functions_of(lut, table, texels.size() / 4);
+        append_texels(lut, texels);
+        text = std::regex_replace(text, std::regex("uniform sampler[123]D " + lut.sampler + ";"), "");
+        text = std::regex_replace(text, std::regex("texture\\(" + lut.sampler + ", "), lut.sampler + "_at(");
+    }
+    constexpr std::size_t kRowFloats = std::size_t(kColorTableRow) * 4;
+    texels.resize(std::max<std::size_t>((texels.size() + kRowFloats - 1) / kRowFloats, 1) * kRowFloats);
+    return functions + text;
+}
+
+}  // namespace aftershade

@@ -1,0 +1,195 @@
+#include "framework/color/color_transform.h"
+
+#include <algorithm>
+
+#include "framework/color/color_glsl.h"
+#include "framework/color/ocio_config.h"
+
+namespace aftershade {
+
+bool is_config_address(const std::string& path) {
+    return path.starts_with("ocio://");
+}
+
+#ifndef AFTERSHADE_HAS_OPENCOLORIO
+
+namespace {
+const ColorFault kAbsent = {
+    "",
+    "this program was built without OpenColorIO; install its library (Debian: libopencolorio-dev) and "
+    "build again"};
+}
+
+std::variant<ColorTransform, ColorFault> make_color_transform(const ColorRequest&) {
+    return kAbsent;
+}
+std::variant<ColorNames, ColorFault> color_names(const std::string&) {
+    return kAbsent;
+}
+bool has_opencolorio() {
+    return false;
+}
+
+#else
+
+namespace ocio = OCIO_NAMESPACE;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The same with cubes whose text is short: OpenColorIO's own for tetrahedra has six branches, of which
+/// software GL runs each.
+ocio::ConstProcessorRcPtr with_plain_cubes(const ocio::ConstConfigRcPtr& config,
+                                           const ocio::ConstProcessorRcPtr& processor) {
+    const ocio::GroupTransformRcPtr group = processor->createGroupTransform();
+    for (int i = 0; i < group->getNumTransforms(); ++i)
+        if (const auto cube = std::dynamic_pointer_cast<ocio::Lut3DTransform>(group->getTransform(i)))
+            cube->setInterpolation(ocio::INTERP_LINEAR);
+    return config->getProcessor(group);
+}
+
+ocio::GpuShaderDescRcPtr shader_of(const ocio::ConstProcessorRcPtr& processor, const std::string& function) {
+    ocio::GpuShaderDescRcPtr shader = ocio::GpuShaderDesc::CreateShaderDesc();
+    shader->setLanguage(ocio::GPU_LANGUAGE_GLSL_4_0);
+    shader->setFunctionName((function + "_ocio").c_str());
+    shader->setResourcePrefix((function + "_").c_str());
+    processor->getDefaultGPUProcessor()->extractGpuShaderInfo(shader);
+    return shader;
+}
+
+ShaderLut curve_of(const ocio::GpuShaderDesc& shader, unsigned index) {
+    const char *texture = nullptr, *sampler = nullptr;
+    unsigned width = 0, height = 0;
+    auto channel = ocio::GpuShaderDesc::TEXTURE_RGB_CHANNEL;
+    auto interpolation = ocio::INTERP_LINEAR;
+#if OCIO_VERSION_HEX >= 0x02030000
+    auto dimensions = ocio::GpuShaderDesc::TEXTURE_2D;
+    shader.getTexture(index, texture, sampler, width, height, channel, dimensions, interpolation);
+#else
+    shader.getTexture(index, texture, sampler, width, height, channel, interpolation);
+#endif
+    ShaderLut lut{sampler, 2, int(width), int(std::max(height, 1u)), 3, false, {}};
+    if (channel == ocio::GpuShaderDesc::TEXTURE_RED_CHANNEL) lut.channels = 1;
+    const float* values = nullptr;
+    shader.getTextureValues(index, values);
+    lut.values.assign(values,
+                      values + std::size_t(lut.width) * std::size_t(lut.height) * std::size_t(lut.channels));
+    return lut;
+}
+
+ShaderLut cube_of(const ocio::GpuShaderDesc& shader, unsigned index, bool is_tetrahedral) {
+    const char *texture = nullptr, *sampler = nullptr;
+    unsigned edge = 0;
+    auto interpolation = ocio::INTERP_LINEAR;
+    shader.get3DTexture(index, texture, sampler, edge, interpolation);
+    ShaderLut lut{sampler, 3, int(edge), int(edge), 3, is_tetrahedral, {}};
+    const float* values = nullptr;
+    shader.get3DTextureValues(index, values);
+    lut.values.assign(values, values + std::size_t(edge) * edge * edge * 3);
+    return lut;
+}
+
+bool is_tetrahedral(const ocio::GpuShaderDesc& shader, unsigned index) {
+    const char *texture = nullptr, *sampler = nullptr;
+    unsigned edge = 0;
+    auto interpolation = ocio::INTERP_LINEAR;
+    shader.get3DTexture(index, texture, sampler, edge, interpolation);
+    return interpolation == ocio::INTERP_TETRAHEDRAL;
+}
+
+/// The function that shaders call, around OpenColorIO's. A config's light is the capture's where no space is
+/// said.
+std::string wrapper_of(const ColorRequest& request) {
+    const auto is_light = [&](const char* part) {
+        const auto found = request.words.find(part);
+        return !request.is_file && found != request.words.end() && found->second.empty();
+    };
+    const std::string light = is_light("source") ? "frame.rec709_from_color * rgb" : "rgb";
+    const std::string call = request.function + "_ocio(vec4(" + light + ", 1.0)).rgb";
+    return "vec3 " + request.function + "(vec3 rgb) { return " +
+           (is_light("destination") ? "inverse(frame.rec709_from_color) * " : "") + call + "; }\n";
+}
+
+std::variant<ColorTransform, ColorFault> transform_of(const ocio::ConstConfigRcPtr& config,
+                                                      const ocio::ConstProcessorRcPtr& processor,
+                                                      const ColorRequest& request) {
+    const auto given = shader_of(processor, request.function);
+    const auto shader = shader_of(with_plain_cubes(config, processor), request.function);
+    if (shader->getNumUniforms() > 0 || given->getNum3DTextures() != shader->getNum3DTextures())
+        return ColorFault{
+            "", "OpenColorIO " + std::string(ocio::GetVersion()) +
+                    " gives this transform a form that the program cannot take: bake it into a LUT"};
+    std::vector<ShaderLut> luts;
+    for (unsigned i = 0; i < shader->getNumTextures(); ++i) luts.push_back(curve_of(*shader, i));
+    for (unsigned i = 0; i < shader->getNum3DTextures(); ++i)
+        luts.push_back(cube_of(*shader, i, is_tetrahedral(*given, i)));
+    ColorTransform transform;
+    transform.glsl =
+        glsl_with_table(shader->getShaderText(), luts, request.function + "_table", transform.texels) +
+        wrapper_of(request);
+    const auto metadata = processor->getProcessorMetadata();
+    for (int i = 0; i < metadata->getNumFiles(); ++i) transform.files.emplace_back(metadata->getFile(i));
+    return transform;
+}
+
+std::variant<ColorTransform, ColorFault> of_config(const ColorRequest& request) {
+    auto opened = open_config(request.path);
+    if (auto* fault = std::get_if<ColorFault>(&opened)) return *fault;
+    const OcioConfig& config = std::get<OcioConfig>(opened);
+    try {
+        const auto processor = processor_of(config, request);
+        if (const auto* fault = std::get_if<ColorFault>(&processor)) return *fault;
+        auto made = transform_of(config.config, std::get<ocio::ConstProcessorRcPtr>(processor), request);
+        if (auto* transform = std::get_if<ColorTransform>(&made)) {
+            if (const fs::path file = escaped_file(config, transform->files); !file.empty())
+                return ColorFault{"", config.name + " names '" + file.string() +
+                                          "', which lies outside of its folder and its search path"};
+            if (!config.file.empty()) transform->files.insert(transform->files.begin(), config.file);
+        }
+        return made;
+    } catch (const ocio::Exception& error) {
+        return fault_of_config(config, error);
+    }
+}
+
+std::variant<ColorTransform, ColorFault> of_file(const ColorRequest& request) {
+    if (std::error_code failure; !fs::is_regular_file(request.path, failure))
+        return ColorFault{"", "no file '" + request.path + "'"};
+    try {
+        const auto config = ocio::Config::CreateRaw();
+        const auto transform = ocio::FileTransform::Create();
+        transform->setSrc(request.path.c_str());
+        if (request.has("correction")) transform->setCCCId(request.words.at("correction").c_str());
+        transform->setInterpolation(ocio::INTERP_BEST);
+        return transform_of(config,
+                            config->getProcessor(transform, request.inverse ? ocio::TRANSFORM_DIR_INVERSE
+                                                                            : ocio::TRANSFORM_DIR_FORWARD),
+                            request);
+    } catch (const ocio::Exception& error) {
+        const bool is_correction = request.has("correction") && !request.words.at("correction").empty();
+        return ColorFault{is_correction ? "correction" : "",
+                          "'" + request.path + "' is no transform that OpenColorIO " + ocio::GetVersion() +
+                              " can use: " + one_line(error.what())};
+    }
+}
+
+}  // namespace
+
+std::variant<ColorTransform, ColorFault> make_color_transform(const ColorRequest& request) {
+    ocio::ClearAllCaches();  // OpenColorIO would not see that a LUT has changed
+    return request.is_file ? of_file(request) : of_config(request);
+}
+
+std::variant<ColorNames, ColorFault> color_names(const std::string& path) {
+    auto opened = open_config(path);
+    if (auto* fault = std::get_if<ColorFault>(&opened)) return *fault;
+    return names_of(std::get<OcioConfig>(opened));
+}
+
+bool has_opencolorio() {
+    return true;
+}
+
+#endif
+
+}  // namespace aftershade
