@@ -13,7 +13,7 @@ build_packages=(
     cmake ninja-build g++
     python3 python3-glad        # the GL loader is generated when configuring
     libopenexr-dev libimath-dev libglm-dev libstb-dev libfmt-dev nlohmann-json3-dev libcli11-dev libmurmurhash-dev
-    libtinygltf-dev libxxhash-dev zlib1g-dev libdeflate-dev libopencolorio-dev
+    libtinygltf-dev libxxhash-dev zlib1g-dev libdeflate-dev libopencolorio-dev?
 )
 # Opened at run time, so nothing pulls them in; without libgl1-mesa-dri EGL finds no driver.
 gl_packages=(libegl1 libegl-mesa0 libgl1-mesa-dri)
