@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,7 +40,7 @@ fs::path job_file(const fs::path& folder) {
     return folder / "job";
 }
 
-/// The lines of the process without warnings, which the terminal has.
+/// What the page says of the process: its lines without warnings. The terminal has them all.
 class Faults {
 public:
     void add(std::string_view line) {
@@ -72,7 +73,10 @@ serve::RunExport export_runner(PassLimit limit) {
         Faults faults;
         WorkerListener listener;
         listener.on_status = [&](const WorkStatus& status) { watchdog.is_at(status); };
-        listener.on_stderr = [&](std::string_view line) { faults.add(line); };
+        listener.on_stderr = [&](std::string_view line) {
+            faults.add(line);
+            std::cerr << std::string(line) + "\n";
+        };
         listener.on_frame = [&](const FrameEvent& event) {
             if (event.outcome == "done") frame_done();
         };

@@ -63,7 +63,7 @@ export class SaveDialog {
           { class: "help-head" },
           element("h2", { id: heading }, count === 1 ? "The look has a fault" : `The look has ${count} faults`),
         ),
-        element("p", { class: "empty" }, "`aftershade run` refuses it until they are mended. Save it all the same?"),
+        element("p", { class: "empty" }, "`aftershade run` refuses it until they are corrected. Save it all the same?"),
         element(
           "div",
           { class: "save-foot" },

@@ -234,12 +234,20 @@ class StepCard {
     event.stopPropagation();
   }
 
+  /** Shows heads alone while a step is dragged, so that all places are near; the grip stays under the pointer. */
+  fold(isFolded) {
+    const { top } = this.grip.getBoundingClientRect();
+    this.list.list.classList.toggle("folded", isFolded);
+    this.list.node.scrollTop += this.grip.getBoundingClientRect().top - top;
+  }
+
   /** By the pointer: the grip takes the step along, and a line shows where it will be. */
   enableDrag() {
     this.grip.addEventListener("pointerdown", (event) => {
       event.preventDefault();
       this.grip.setPointerCapture(event.pointerId);
       this.node.classList.add("dragged");
+      this.fold(true);
       const others = [...this.list.list.children];
       let to = this.index;
       const move = ({ clientY }) => {
@@ -257,6 +265,7 @@ class StepCard {
         others.forEach((node) => node.classList.remove("before-gap"));
         this.list.list.classList.remove("gap-at-end");
         this.node.classList.remove("dragged");
+        this.fold(false);
         if (type === "pointerup" && to !== this.index) this.list.move(this, to - this.index);
       };
       this.grip.addEventListener("pointermove", move);

@@ -1,8 +1,5 @@
 #include "framework/serve/look_model.h"
 
-#include <algorithm>
-#include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <nlohmann/json.hpp>

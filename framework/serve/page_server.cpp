@@ -197,7 +197,7 @@ Response PageServer::start_export(const Request& request) {
         throw Refusal{403, "nothing is exported: the program runs with " + spelled(Option::read_only)};
     const auto look = setup_.look.bound();
     if (!look || look->revision != setup_.look.revision())
-        throw Refusal{409, "the look has faults; mend them before the export"};
+        throw Refusal{409, "the look has faults; correct them before the export"};
     const auto capture = setup_.captures.now();
     setup_.exporter.start({body["name"].get<std::string>(), body["format"].get<std::string>(), look->text,
                            look->files, setup_.look.folder(), capture->name,

@@ -722,3 +722,22 @@ walkBlender("goes from a frame of Blender to a film by hand, without a line of J
       frame,
     );
 });
+
+walk("folds open steps while one of them is dragged", async (page) => {
+  for (const [at, effect] of ["dof", "vignette", "view_transform"].entries()) await edit(page, { op: "add", at, effect });
+  for (const name of ["dof", "vignette"]) await opened(page, name);
+  const grip = await page.locator('.step[data-step="dof"] .grip').boundingBox(),
+    shown = () => page.locator(".step .body").evaluateAll((nodes) => nodes.filter((node) => node.checkVisibility()).length);
+  assert.equal(await shown(), 2);
+  await page.mouse.move(grip.x + 8, grip.y + 8);
+  await page.mouse.down();
+  assert.equal(await shown(), 0);
+  // The heads are near each other now: the last one is two heads below.
+  const last = await page.locator('.step[data-step="view_transform"]').boundingBox();
+  assert.ok(last.y < grip.y + 120, last.y);
+  await page.mouse.move(grip.x + 8, last.y + last.height + 4, { steps: 4 });
+  await shot(page, "folded");
+  await page.mouse.up();
+  await page.waitForFunction(() => window.aftershade.store.state.steps.at(-1).effect === "dof");
+  assert.equal(await shown(), 2);
+});
