@@ -16,19 +16,12 @@ namespace aftershade::cli {
 
 namespace {
 
-struct ExplainOptions {
-    GoldenOptions golden;
-    std::string chosen;  ///< name, glob or tag
-};
-
-ExitCode explain(const ExplainOptions& options) {
+ExitCode explain(const GoldenOptions& options) {
     const std::atomic<bool>& stop = watch_for_interrupt();
-    const GoldenSetup setup = prepare_golden(options.golden);
-    if (const std::string why = fault_of_filter(setup.suite, options.chosen); !why.empty())
-        throw CodedError(kCompareUsage, "'" + options.chosen + "' " + why);
+    const GoldenSetup setup = prepare_golden(options);
     std::vector<const GoldenCase*> cases;
     for (const GoldenCase& test : setup.suite.cases)
-        if (fits_filter(test, {options.chosen})) cases.push_back(&test);
+        if (fits_filter(test, options.filters)) cases.push_back(&test);
     std::vector<GoldenExplanation> explanations(cases.size());
     for_each_in_folders(
         cases.size(), setup.context.options.jobs, [&](std::size_t i, const std::filesystem::path& work) {
@@ -46,12 +39,13 @@ ExitCode explain(const ExplainOptions& options) {
 }  // namespace
 
 std::function<ExitCode()> add_golden_explain(CLI::App& golden) {
-    auto options = std::make_shared<ExplainOptions>();
+    auto options = std::make_shared<GoldenOptions>();
+    options->filter_place = "case ";
     auto* const verb = golden.add_subcommand(
         "explain", "Print the first step of a case that differs, what of it has changed, and the commits");
-    verb->add_option("suite", options->golden.suite, "A golden.json or its folder")->required();
-    verb->add_option("case", options->chosen, "Name of the case; a glob or a tag for several")->required();
-    add_golden_drawing_options(*verb, options->golden);
+    verb->add_option("suite", options->suite, "A golden.json or its folder")->required();
+    verb->add_option("case", options->filters, "Names of cases, globs or tags")->required();
+    add_golden_drawing_options(*verb, *options);
     return [options] { return explain(*options); };
 }
 

@@ -15,6 +15,7 @@
 #include "cli/effect_options.h"
 #include "cli/exit_code.h"
 #include "cli/gl_options.h"
+#include "cli/interrupt.h"
 #include "framework/base/text.h"
 #include "framework/batch/git_lines.h"
 
@@ -37,18 +38,7 @@ gpu::GlChoice gl_of(const GoldenOptions& options, int part) {
     }
 }
 
-void check_words(const GoldenOptions& options, const GoldenSuite& suite, Diagnostics& diagnostics) {
-    for (const std::string& path : options.effect_paths)
-        if (!fs::is_directory(path)) diagnostics.error({"--effect-path " + path}, "no such folder");
-    for (const std::string& filter : options.filters)
-        if (const std::string why = fault_of_filter(suite, filter); !why.empty())
-            diagnostics.error({"--filter " + filter}, why);
-    if (!options.report.empty() && fs::exists(options.report) && !fs::is_directory(options.report))
-        diagnostics.error({"--report " + options.report}, "is not a folder");
-}
-
-}  // namespace
-
+/// Why a name, glob or tag stands for no case; "" where it stands for one.
 std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter) {
     std::vector<std::string> words;
     for (const GoldenCase& test : suite.cases) {
@@ -58,6 +48,18 @@ std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter)
     }
     return "fits no case's name or tag" + did_you_mean(filter, words);
 }
+
+void check_words(const GoldenOptions& options, const GoldenSuite& suite, Diagnostics& diagnostics) {
+    for (const std::string& path : options.effect_paths)
+        if (!fs::is_directory(path)) diagnostics.error({"--effect-path " + path}, "no such folder");
+    for (const std::string& filter : options.filters)
+        if (const std::string why = fault_of_filter(suite, filter); !why.empty())
+            diagnostics.error({options.filter_place + filter}, why);
+    if (!options.report.empty() && fs::exists(options.report) && !fs::is_directory(options.report))
+        diagnostics.error({"--report " + options.report}, "is not a folder");
+}
+
+}  // namespace
 
 void add_shared_golden_options(CLI::App& app, GoldenOptions& options) {
     app.add_option("suite", options.suite, "A golden.json or its folder")->required();
@@ -122,6 +124,7 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
          {std::pair{"--backend", options.gl.backend}, {"--device", options.gl.device}})
         if (!value.empty()) same.insert(same.end(), {name, value});
     setup.context.with_options = same.empty() ? "" : " " + printed_command(same);
+    run.unfetched = fetch_goldens(setup.suite, options.filters, run.render.timeout, watch_for_interrupt());
     setup.context.commit = line_of_git(setup.suite.folder(), {"rev-parse", "HEAD"});
     return setup;
 }

@@ -19,6 +19,7 @@ namespace aftershade::cli {
 struct GoldenOptions {
     std::string suite;
     std::vector<std::string> filters, effect_paths, plugin_paths;
+    std::string filter_place = "--filter ";  ///< where a filter stands, for messages
     GlOptions gl;
     int jobs = 0;  ///< 0: as many as there are cores
     double timeout_s = 600;
@@ -38,17 +39,14 @@ void add_shared_golden_options(CLI::App& app, GoldenOptions& options);
 /// Those of them that say how cases are drawn.
 void add_golden_drawing_options(CLI::App& app, GoldenOptions& options);
 
-/// The suite, what its workers will draw with, and what reports write about both. Throws
-/// CodedError(kCompareUsage) with every fault of documents and words, Error(ErrorKind::gl) without a usable
-/// backend.
+/// The suite with its images fetched, what its workers will draw with, and what reports write about both.
+/// Throws CodedError(kCompareUsage) with every fault of documents and words, Error(ErrorKind::gl) without a
+/// usable backend.
 struct GoldenSetup {
     GoldenSuite suite;
     GoldenReportContext context;
 };
 GoldenSetup prepare_golden(const GoldenOptions& options);
-
-/// Why a name, glob or tag stands for no case; "" where it stands for one.
-std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter);
 
 /// What approves the images of a suite now, by that command.
 GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOptions& options,

@@ -90,6 +90,7 @@ bool set_limits(const ChildLimits& limits) {
         done = limit(RLIMIT_AS, *limits.memory_bytes, *limits.memory_bytes) && done;
     // SIGXCPU first, which tells why; SIGKILL a second later for who ignores it.
     if (limits.cpu_seconds) done = limit(RLIMIT_CPU, *limits.cpu_seconds, *limits.cpu_seconds + 1) && done;
+    if (limits.file_bytes) done = limit(RLIMIT_FSIZE, *limits.file_bytes, *limits.file_bytes) && done;
     return done;
 }
 

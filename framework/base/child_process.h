@@ -40,6 +40,7 @@ std::pair<Descriptor, Descriptor> make_socket_pair();
 struct ChildLimits {
     std::optional<std::uint64_t> memory_bytes;  ///< RLIMIT_AS: address space, which is more than RAM used
     std::optional<std::uint64_t> cpu_seconds;   ///< RLIMIT_CPU, of all threads
+    std::optional<std::uint64_t> file_bytes;    ///< RLIMIT_FSIZE, of each file that it writes
     std::uint64_t core_bytes = 0;               ///< RLIMIT_CORE: no core files, as a rule
 };
 

@@ -13,6 +13,7 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/path_bounds.h"
+#include "framework/base/side_file.h"
 #include "framework/base/text.h"
 #include "framework/capture/frame_range.h"
 #include "framework/document/document.h"
@@ -62,6 +63,14 @@ std::string slug(const std::string& text) {
     return result;
 }
 
+std::string digest_of(const Json& sidecar) {
+    const auto found = sidecar.find("sha256");
+    if (found == sidecar.end() || !found->is_string()) return "";
+    const std::string digest = found->get<std::string>();
+    const bool fits = digest.size() == 64 && digest.find_first_not_of("0123456789abcdef") == digest.npos;
+    return fits ? digest : "";
+}
+
 std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<SidecarFault>& fault) {
     const fs::path file = sidecar_path(image);
     constexpr const char* kRemedy = " (golden approve writes it again)";
@@ -94,6 +103,7 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     sidecar.approver = text("approver");
     sidecar.approved = text("approved");
     sidecar.origin = origin_of(json);
+    sidecar.sha256 = digest_of(json);
     if (sidecar.image_hash.empty() || sidecar.image_hash == file_hash(image)) return sidecar;
     fault = {Verdict::warning,
              file.string() + ": is of another image than " + image.filename().string() + kRemedy};
@@ -191,6 +201,12 @@ fs::path sidecar_path(const fs::path& image) {
     return fs::path(image).replace_extension(".json");
 }
 
+std::string stored_digest(const fs::path& folder, const std::string& sidecar, std::string& fault) {
+    const std::string text = read_file_below(folder, sidecar, kMaxSidecarBytes, fault);
+    const Json json = Json::parse(text, nullptr, false);
+    return fault.empty() && json.is_object() ? digest_of(json) : "";
+}
+
 std::string sidecar_text(const GoldenSidecar& sidecar) {
     Json json{{"aftershade", 1}};
     json.update(json_of(sidecar.environment));
@@ -199,6 +215,7 @@ std::string sidecar_text(const GoldenSidecar& sidecar) {
     json["capture_hash"] = sidecar.sources.capture;
     json["program"] = sidecar.sources.program;
     json["image_hash"] = sidecar.image_hash;
+    if (!sidecar.sha256.empty()) json["sha256"] = sidecar.sha256;
     if (!sidecar.approver.empty()) json["approver"] = sidecar.approver;
     if (!sidecar.approved.empty()) json["approved"] = sidecar.approved;
     add_origin(sidecar.origin, json);

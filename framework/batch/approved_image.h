@@ -56,6 +56,7 @@ struct GoldenSidecar {
     std::string approver = {};  ///< who approved it; "" where no one is named
     std::string approved = {};  ///< the day, UTC: "2025-03-14"; "" where it is not known
     CaseOrigin origin = {};
+    std::string sha256 = {};  ///< of the image file, which a store has under that name; "" where none has
 };
 
 /// Why a sidecar that is there is not believed, and what that is worth.
@@ -80,6 +81,10 @@ std::vector<ApprovedImage> approved_images(const std::filesystem::path& folder, 
 std::optional<int> approved_frame(const std::string& file_name, const std::string& image_stem);
 
 std::filesystem::path sidecar_path(const std::filesystem::path& image);
+/// The SHA-256 that a sidecar names, of an image in a store; "" where it names none, or cannot be read.
+/// `fault` says why it cannot.
+std::string stored_digest(const std::filesystem::path& folder, const std::string& sidecar,
+                          std::string& fault);
 std::string sidecar_text(const GoldenSidecar& sidecar);
 /// FNV-1a of the file's bytes, 16 hexadecimal digits; "" where it cannot be read.
 std::string file_hash(const std::filesystem::path& file);

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <list>
 #include <mutex>
+#include <set>
 #include <utility>
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/input_files.h"
+#include "framework/base/scratch_folder.h"
 #include "framework/base/side_file.h"
 #include "framework/batch/capture_hash.h"
 #include "framework/batch/case_trace.h"
+#include "framework/batch/golden_store.h"
 
 namespace aftershade {
 
@@ -70,7 +73,7 @@ private:
 class Approver {
 public:
     Approver(const GoldenSuite& suite, const GoldenApproveOptions& options, GoldenApproval& approval)
-        : options_(options), approval_(approval), inputs_(suite_inputs(suite, false)) {}
+        : suite_(suite), options_(options), approval_(approval), inputs_(suite_inputs(suite, false)) {}
 
     void take(GoldenCaseResult& result, const TracedCase& traced, CaseTracer& tracer) {
         const std::scoped_lock lock(mutex_);
@@ -86,7 +89,12 @@ public:
             take(*result.test, image, result.sources, std::move(origin));
         }
     }
-    void commit() { staging_.commit(); }
+    /// The store first: what is there too many is in nobody's way, and what is missing would be lost.
+    void commit(const std::atomic<bool>& interrupt) {
+        GoldenStore(suite_.store, suite_.folder(), options_.run.render.timeout)
+            .push(pushed_, to_push_.path(), interrupt);
+        staging_.commit();
+    }
 
 private:
     using Approved = std::vector<ApprovedImage>;
@@ -141,13 +149,29 @@ private:
     /// The sidecar of a golden whose bytes are those of `image`.
     void approve(const fs::path& golden, const fs::path& image, GoldenSidecar sidecar) {
         sidecar.image_hash = file_hash(image);
+        if (!suite_.store.empty()) sidecar.sha256 = prepare_push(image);
         sidecar.approver = options_.approver;
         sidecar.approved = options_.approved;
         staging_.add_text(sidecar_path(golden), sidecar_text(sidecar));
     }
 
+    /// The SHA-256 of the image, of which a copy goes to the store.
+    std::string prepare_push(const fs::path& image) {
+        const std::string digest = sha256_of_file(image);
+        if (digest.empty())
+            throw Error(ErrorKind::output,
+                        image.string() + ": cannot be read, or has more bytes than a store takes");
+        fs::copy_file(image, to_push_.path() / stored_name(digest), fs::copy_options::overwrite_existing);
+        pushed_.insert(digest);
+        return digest;
+    }
+
     void renew(const ApprovedImage& approved, GoldenSidecar sidecar) {
         sidecar.image_hash = file_hash(approved.file);
+        if (!suite_.store.empty()) {
+            const bool is_there = approved.sidecar && !approved.sidecar->sha256.empty();
+            sidecar.sha256 = is_there ? approved.sidecar->sha256 : prepare_push(approved.file);
+        }
         if (approved.sidecar) {
             // Only what the bits depend on; another command is no news.
             const GoldenSidecar& old = *approved.sidecar;
@@ -155,7 +179,7 @@ private:
                 old.environment.instructions == sidecar.environment.instructions &&
                 old.sources.look == sidecar.sources.look && old.sources.capture == sidecar.sources.capture &&
                 old.sources.program == sidecar.sources.program && old.image_hash == sidecar.image_hash &&
-                old.origin == sidecar.origin)
+                old.origin == sidecar.origin && old.sha256 == sidecar.sha256)
                 return;
             // The picture is the one that was looked at then.
             sidecar.approver = old.approver;
@@ -177,10 +201,13 @@ private:
         return test.goldens / (image.name + key + ".exr");
     }
 
+    const GoldenSuite& suite_;
     const GoldenApproveOptions& options_;
     GoldenApproval& approval_;
     InputFiles inputs_;
     Staging staging_;
+    ScratchFolder to_push_;
+    std::set<std::string> pushed_;  ///< digests
     std::mutex mutex_;
 };
 
@@ -230,7 +257,8 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
         result.sources = {looks[i], "", options.run.program};
         result.skipped = cases[i]->skip;
         if (interrupt) return;
-        if (result.skipped.empty()) {
+        if (result.skipped.empty() &&
+            !is_unfetched(*cases[i], options.run, result.verdict, result.messages)) {
             result.sources.capture = captures.hash(*cases[i]);
             const TracedCase traced =
                 render_traced(*cases[i], tracer.taps(*cases[i]), options.run.render, work, interrupt);
@@ -248,7 +276,7 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
     for (const GoldenCaseResult& test : approval.cases)
         approval.verdict = std::max(approval.verdict, test.verdict);
     approval.interrupted = interrupt;
-    if (!approval.interrupted) approver.commit();
+    if (!approval.interrupted) approver.commit(interrupt);
     for (auto* files : {&approval.written, &approval.renewed, &approval.outdated}) std::ranges::sort(*files);
     return approval;
 }

@@ -189,6 +189,7 @@ GoldenExplanation explain_case(const GoldenCase& test, const GoldenRunOptions& o
                                const fs::path& suite_folder, const fs::path& work,
                                const std::atomic<bool>& interrupt) {
     GoldenExplanation result;
+    if (is_unfetched(test, options, result.image.verdict, result.messages)) return result;
     CaptureHasher captures;
     const GoldenSources sources{look_hashes({&test}, options.render).front(), captures.hash(test),
                                 options.program};

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "framework/batch/golden_store.h"
 #include "framework/capture/document_forms.h"
 #include "framework/compare/compare_area.h"
 #include "framework/compare/compare_files.h"
@@ -220,6 +221,13 @@ const Block& golden_suite_block() {
         .doc = "The document.",
         .keys = {optional("goldens", text(), "Folder of the approved images, used by this suite alone.",
                           R"("goldens")"),
+                 optional("store",
+                          text({.pattern = {kStorePattern, is_store},
+                                .fault = "'{}' is neither a folder, a URL of http or https without user, "
+                                         "password and query, nor rclone:REMOTE:PATH with a remote of your "
+                                         "rclone.conf",
+                                .type = "folder, URL or `rclone:REMOTE:PATH`"}),
+                          "[Where the approved images lie](#stores); default: in the tree alone."),
                  optional("effect_paths", texts(),
                           "Folders of effects, searched before the shipped effects."),
                  optional("cases", grammar::list(grammar::object(case_block())),

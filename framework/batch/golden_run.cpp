@@ -72,6 +72,7 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictu
               const std::atomic<bool>& interrupt, GoldenCaseResult& result, bool& interrupted) {
     const GoldenCase& test = *result.test;
     if (!test.skip.empty()) return skip(result, test.skip, options);
+    if (is_unfetched(test, options, result.verdict, result.messages)) return;
     const RenderedCase rendered = render_case(test, options.render, work, interrupt);
     interrupted = rendered.interrupted;
     if (!rendered.absent.empty()) return skip(result, rendered.absent, options);
@@ -122,6 +123,15 @@ void for_each_in_folders(std::size_t count, int jobs,
     turn();
     for (std::thread& thread : threads) thread.join();
     if (failure) std::rethrow_exception(failure);
+}
+
+bool is_unfetched(const GoldenCase& test, const GoldenRunOptions& options, Verdict& verdict,
+                  std::vector<std::string>& messages) {
+    const auto unfetched = options.unfetched.find(test.name);
+    if (unfetched == options.unfetched.end()) return false;
+    verdict = Verdict::file_error;
+    messages = unfetched->second;
+    return true;
 }
 
 std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "framework/batch/approved_image.h"
+#include "framework/batch/golden_fetch.h"
 #include "framework/batch/golden_render.h"
 #include "framework/batch/golden_suite.h"
 #include "framework/batch/report_pictures.h"
@@ -76,6 +77,7 @@ struct GoldenRunOptions {
     GoldenEnvironment environment;  ///< of the workers
     std::string program;            ///< GoldenSources::program
     std::vector<std::string> filters;
+    UnfetchedImages unfetched;     ///< of a store; these cases have no verdict but a file error
     std::filesystem::path report;  ///< <report>/images exists and is for pictures; "": none are written
     int jobs = 1;
     bool no_skip = false;  ///< a skipped case fails
@@ -109,6 +111,10 @@ std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases
 /// folders go away. The first exception ends all and is thrown.
 void for_each_in_folders(std::size_t count, int jobs,
                          const std::function<void(std::size_t, const std::filesystem::path&)>& work);
+
+/// Whether images of the case could not be fetched; then the result has the reasons.
+bool is_unfetched(const GoldenCase& test, const GoldenRunOptions& options, Verdict& verdict,
+                  std::vector<std::string>& messages);
 
 /// Whether two files have the same layers with the same bits in every value.
 bool has_equal_bits(const Comparison& comparison);

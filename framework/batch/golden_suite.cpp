@@ -37,6 +37,7 @@ public:
         if (const std::string why = out_of_bounds(goldens_, folder_); !why.empty())
             diagnostics_.error(reader.place("goldens"), "the folder '" + goldens_.string() + "' " + why);
         suite_.golden_folders.push_back(goldens_);
+        suite_.store = reader.text("store");
         for (const std::string& path : reader.texts("effect_paths")) add_effect_path(node, path);
         for (const grammar::Reader& test : reader.objects("cases")) add_case(test);
         if (reader.boolean("cases_of_effects")) add_cases_of_effects();
@@ -122,8 +123,13 @@ bool is_orphan(const fs::path& file, const std::map<std::string, KnownImages>& k
     const bool image = file.extension() == ".exr", sidecar = file.extension() == ".json";
     // <case>.json is a case of an effect.
     if (name.starts_with('.') || (!image && !(sidecar && std::ranges::count(name, '.') > 1))) return false;
-    if (sidecar && !fs::exists(fs::path(file).replace_extension(".exr"))) return true;
     const auto images = known.find(first_word(file));
+    if (sidecar && !fs::exists(fs::path(file).replace_extension(".exr"))) {
+        // An image of a store that could not be fetched is its case's verdict.
+        std::string fault;
+        return stored_digest(file.parent_path(), name, fault).empty() || images == known.end() ||
+               !images->second.has(fs::path(name).replace_extension(".exr").string());
+    }
     return images == known.end() || (image && !images->second.has(name));
 }
 

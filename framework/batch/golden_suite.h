@@ -20,6 +20,7 @@ struct GoldenSuite {
     std::vector<std::filesystem::path> documents;  ///< that were read
     /// That goldens may lie in, also where no case is left: that of the document, those of effects' cases.
     std::vector<std::filesystem::path> golden_folders;
+    std::string store;  ///< of the approved images (golden_store.h); "": they are in the tree alone
     std::vector<GoldenCase> cases;  ///< those of the document, then those of effects by name
 
     /// That the document lies in.

@@ -1,0 +1,23 @@
+// The images of a suite with a store, fetched into its folder of goldens.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/batch/golden_suite.h"
+
+namespace aftershade {
+
+/// What a case lacks, by its name: a sentence for each image.
+using UnfetchedImages = std::map<std::string, std::vector<std::string>>;
+
+/// For each sidecar of the cases that names a SHA-256: the image beside it has these bytes afterwards, or is
+/// in the result. Takes it from the cache, else from the store, whose images go into the cache. Nothing is
+/// done for a suite without a store. Throws Error(ErrorKind::output) where the cache cannot be written.
+UnfetchedImages fetch_goldens(const GoldenSuite& suite, const std::vector<std::string>& filters,
+                              std::chrono::milliseconds timeout, const std::atomic<bool>& interrupt);
+
+}  // namespace aftershade
