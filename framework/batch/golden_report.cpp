@@ -193,9 +193,9 @@ Json json_of(const GoldenImage& image) {
               {"heat_map", text_or_null(pictures.heat_map)},
               {"side_by_side", text_or_null(pictures.side_by_side)},
               {"reference_exr", text_or_null(pictures.reference_exr)},
-              {"test_exr", text_or_null(pictures.test_exr)},
-              {"reference_hash", text_or_null(pictures.reference_hash)},
-              {"test_hash", text_or_null(pictures.test_hash)}}},
+              {"test_exr", text_or_null(pictures.test_exr)}}},
+            {"hashes",
+             {{"reference", text_or_null(pictures.reference_hash)}, {"test", text_or_null(pictures.test_hash)}}},
             {"areas", std::move(areas)},
             {"comparison", image.comparison ? json_of(*image.comparison, image.rules) : Json(nullptr)}};
 }
