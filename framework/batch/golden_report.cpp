@@ -174,6 +174,8 @@ Json json_of(const GoldenImage& image) {
     Json areas = Json::object();
     for (const auto& [layer, map] : image.areas) areas[layer] = json_of(map);
     const GoldenPictures& pictures = image.pictures;
+    const Json hashes = {{"reference", text_or_null(pictures.reference_hash)},
+                         {"test", text_or_null(pictures.test_hash)}};
     return {{"name", image.name},
             {"output", image.output},
             {"frame", image.frame},
@@ -193,9 +195,8 @@ Json json_of(const GoldenImage& image) {
               {"heat_map", text_or_null(pictures.heat_map)},
               {"side_by_side", text_or_null(pictures.side_by_side)},
               {"reference_exr", text_or_null(pictures.reference_exr)},
-              {"test_exr", text_or_null(pictures.test_exr)},
-              {"reference_hash", text_or_null(pictures.reference_hash)},
-              {"test_hash", text_or_null(pictures.test_hash)}}},
+              {"test_exr", text_or_null(pictures.test_exr)}}},
+            {"hashes", hashes},
             {"areas", std::move(areas)},
             {"comparison", image.comparison ? json_of(*image.comparison, image.rules) : Json(nullptr)}};
 }

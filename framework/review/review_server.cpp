@@ -77,9 +77,9 @@ std::map<std::string, ReviewedCase> ReviewServer::cases_of(const Json& report) {
         ReviewedCase& reviewed = cases[test.at("name").get<std::string>()];
         reviewed.can_approve = test.at("approve").is_string();
         for (const Json& image : test.at("images")) {
-            const Json& pictures = image.at("pictures");
-            reviewed.images.push_back({image.at("name").get<std::string>(), text_of(pictures, "test_hash"),
-                                       text_of(pictures, "reference_hash")});
+            const Json hashes = image.value("hashes", Json::object());
+            reviewed.images.push_back(
+                {image.at("name").get<std::string>(), text_of(hashes, "test"), text_of(hashes, "reference")});
             // A report of an earlier version has no hashes, so that nothing says what was seen.
             reviewed.can_approve &= !reviewed.images.back().test.empty();
             reviewed.adds |= image.at("verdict") != "same" && image.at("only_machine_changed") == true;

@@ -32,8 +32,8 @@ protected:
         Json images = Json::array();
         for (const Json& image : case_of(report, name)["images"])
             images.push_back({{"name", image["name"]},
-                              {"test", image["pictures"]["test_hash"]},
-                              {"reference", image["pictures"]["reference_hash"]}});
+                              {"test", image["hashes"]["test"]},
+                              {"reference", image["hashes"]["reference"]}});
         return {{"case", name}, {"decision", decision}, {"by", "Ada <ada@example.org>"}, {"images", images}};
     }
     void write_decisions(const Json& decisions) {

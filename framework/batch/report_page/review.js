@@ -4,11 +4,7 @@
 const isReviewable = (test) => kindOf(test) === "failed" || kindOf(test) === "warned";
 
 const seenImages = (test) =>
-  test.images.map(({ name, pictures }) => ({
-    name,
-    test: pictures.test_hash,
-    reference: pictures.reference_hash ?? null,
-  }));
+  test.images.map(({ name, hashes }) => ({ name, test: hashes.test, reference: hashes.reference }));
 
 /** Decisions of a page without a server: they last until they are downloaded. */
 class OwnDecisions {
