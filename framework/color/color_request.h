@@ -1,4 +1,4 @@
-// What is asked of OpenColorIO, and why it may not give it.
+// Requests to OpenColorIO, and the reasons that refuse them.
 #pragma once
 
 #include <compare>

@@ -162,7 +162,7 @@ std::variant<ColorTransform, ColorFault> of_file(const ColorRequest& request) {
                             request);
     } catch (const ocio::Exception& error) {
         return ColorFault{request.word("correction").empty() ? "" : "correction",
-                          "'" + request.path + "' is no transform that OpenColorIO " + ocio::GetVersion() +
+                          "'" + request.path + "' is not a transform that OpenColorIO " + ocio::GetVersion() +
                               " can use: " + one_line(error.what())};
     }
 }

@@ -177,7 +177,7 @@ std::variant<OcioConfig, ColorFault> open_config(std::string path) {
     if (is_of_variable) config.name += " of $OCIO";
     const bool is_file = !path.empty() && !is_config_address(path);
     if (std::error_code failure; is_file && !fs::is_regular_file(path, failure))
-        return ColorFault{"", config.name + " does not exist, or is no file"};
+        return ColorFault{"", config.name + " does not exist, or is not a file"};
     if (is_file) config.file = path;
     try {
         if (path.empty()) {
