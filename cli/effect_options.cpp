@@ -7,7 +7,7 @@
 
 #include "framework/base/data_path.h"
 #include "framework/base/path_bounds.h"
-#include "framework/color/color_transform.h"
+#include "framework/color/color_request.h"
 
 namespace aftershade::cli {
 

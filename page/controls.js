@@ -140,7 +140,8 @@ function controlFor(context) {
   if (parameter.type === "bool") return boolControl(context);
   if (parameter.type === "enum") return enumControl(context);
   if (parameter.type === "objects") return objectsControl(context);
-  if (parameter.type === "file") return textControl(context, values.asText, (text) => ({ value: text.trim() }));
+  if (parameter.type === "file" || parameter.type === "text")
+    return textControl(context, values.asText, (text) => ({ value: text.trim() }));
   if (parameter.type === "table") return tableControl(context);
   if (parameter.type === "scattering_profile") return profileControl(context);
   return textControl(context, values.asText, anyValue);

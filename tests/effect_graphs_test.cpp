@@ -62,7 +62,8 @@ std::vector<const ParamSpec*> form_params(const EffectManifest& manifest) {
     }
     std::vector<const ParamSpec*> specs;
     for (const ParamSpec& spec : manifest.params)
-        if (spec.bind == ParamBind::define || names.contains(spec.name)) specs.push_back(&spec);
+        if (spec.bind == ParamBind::define || names.contains(spec.name) || !spec.ocio.empty())
+            specs.push_back(&spec);
     return specs;
 }
 

@@ -79,7 +79,7 @@ TEST(OcioFileTransform, SaysWhatAFileLacks) {
         }
         return "";
     };
-    EXPECT_NE(fault_of("bad.clf", "").find("bad.clf' is no transform"), std::string::npos)
+    EXPECT_NE(fault_of("bad.clf", "").find("bad.clf' is not a transform"), std::string::npos)
         << fault_of("bad.clf", "");
     EXPECT_NE(fault_of("grades.ccc", R"(, "correction": "dusk")").find("dusk"), std::string::npos);
 }

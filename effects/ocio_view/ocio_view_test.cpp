@@ -88,6 +88,12 @@ TEST(OcioView, ExposesBeforeTheViewAndRaisesAfterIt) {
     EXPECT_NEAR(value(0.36f, R"("gamma": 2)"), std::sqrt(plain), 1e-5);
 }
 
+TEST(OcioView, MakesADisplayThatIsNotSaidToBeSrgb) {
+    const Capture capture = make_capture({.width = 4, .height = 4});
+    EXPECT_FALSE(run_step("ocio_view", capture, "").has_srgb_display);
+    EXPECT_TRUE(run_step("view_transform", capture, "").has_srgb_display);
+}
+
 TEST(OcioView, TakesTheConfigOfTheVariableWhereTheLookNamesNone) {
     const StudioConfig studio;
     ScopedVariable variable("OCIO");

@@ -5,7 +5,7 @@
 #include <regex>
 #include <string_view>
 
-#include "framework/color/color_transform.h"
+#include "framework/color/color_request.h"
 #include "framework/document/glsl_text.h"
 
 namespace aftershade {

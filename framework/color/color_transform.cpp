@@ -7,10 +7,6 @@
 
 namespace aftershade {
 
-bool is_config_address(const std::string& path) {
-    return path.starts_with("ocio://");
-}
-
 #ifndef AFTERSHADE_HAS_OPENCOLORIO
 
 namespace {
@@ -100,14 +96,13 @@ bool is_tetrahedral(const ocio::GpuShaderDesc& shader, unsigned index) {
 /// The function that shaders call, around OpenColorIO's. A config's light is the capture's where no space is
 /// said.
 std::string wrapper_of(const ColorRequest& request) {
-    const auto is_light = [&](const char* part) {
-        const auto found = request.words.find(part);
-        return !request.is_file && found != request.words.end() && found->second.empty();
-    };
-    const std::string light = is_light("source") ? "frame.rec709_from_color * rgb" : "rgb";
-    const std::string call = request.function + "_ocio(vec4(" + light + ", 1.0)).rgb";
+    const bool takes_light = !request.is_file && request.word("source").empty();
+    const bool gives_light = !request.is_file && !request.is_view() && request.word("destination").empty();
+    const bool has_light_before = request.inverse ? gives_light : takes_light;
+    const bool has_light_after = request.inverse ? takes_light : gives_light;
     return "vec3 " + request.function + "(vec3 rgb) { return " +
-           (is_light("destination") ? "inverse(frame.rec709_from_color) * " : "") + call + "; }\n";
+           (has_light_after ? "inverse(frame.rec709_from_color) * " : "") + request.function + "_ocio(vec4(" +
+           (has_light_before ? "frame.rec709_from_color * rgb" : "rgb") + ", 1.0)).rgb; }\n";
 }
 
 std::variant<ColorTransform, ColorFault> transform_of(const ocio::ConstConfigRcPtr& config,
@@ -159,16 +154,15 @@ std::variant<ColorTransform, ColorFault> of_file(const ColorRequest& request) {
         const auto config = ocio::Config::CreateRaw();
         const auto transform = ocio::FileTransform::Create();
         transform->setSrc(request.path.c_str());
-        if (request.has("correction")) transform->setCCCId(request.words.at("correction").c_str());
+        transform->setCCCId(request.word("correction").c_str());
         transform->setInterpolation(ocio::INTERP_BEST);
         return transform_of(config,
                             config->getProcessor(transform, request.inverse ? ocio::TRANSFORM_DIR_INVERSE
                                                                             : ocio::TRANSFORM_DIR_FORWARD),
                             request);
     } catch (const ocio::Exception& error) {
-        const bool is_correction = request.has("correction") && !request.words.at("correction").empty();
-        return ColorFault{is_correction ? "correction" : "",
-                          "'" + request.path + "' is no transform that OpenColorIO " + ocio::GetVersion() +
+        return ColorFault{request.word("correction").empty() ? "" : "correction",
+                          "'" + request.path + "' is not a transform that OpenColorIO " + ocio::GetVersion() +
                               " can use: " + one_line(error.what())};
     }
 }

@@ -48,8 +48,8 @@ public:
         const ocio::GroupTransformRcPtr group = ocio::GroupTransform::Create();
         const std::string source = space("source");
         if (source.empty()) return nullptr;
-        if (word("source").empty()) group->appendTransform(between_rec709(kAp0FromRec709));
-        if (request_.has("view")) {
+        if (request_.word("source").empty()) group->appendTransform(between_rec709(kAp0FromRec709));
+        if (request_.is_view()) {
             if (!append_view(*group, source)) return nullptr;
         } else {
             const std::string destination = space("destination");
@@ -58,7 +58,7 @@ public:
             convert->setSrc(source.c_str());
             convert->setDst(destination.c_str());
             group->appendTransform(convert);
-            if (word("destination").empty()) group->appendTransform(between_rec709(kRec709FromAp0));
+            if (request_.word("destination").empty()) group->appendTransform(between_rec709(kRec709FromAp0));
         }
         return config_.config->getProcessor(
             group, request_.inverse ? ocio::TRANSFORM_DIR_INVERSE : ocio::TRANSFORM_DIR_FORWARD);
@@ -68,11 +68,6 @@ public:
 
 private:
     enum Direction { kAp0FromRec709, kRec709FromAp0 };
-
-    std::string word(const std::string& part) const {
-        const auto found = request_.words.find(part);
-        return found == request_.words.end() ? "" : found->second;
-    }
 
     static ocio::MatrixTransformRcPtr between_rec709(Direction direction) {
         const Chromaticities ap0 = *color_space_primaries("ap0");
@@ -90,7 +85,7 @@ private:
 
     /// The space that a part names, or the one of AP0 for light; "" after a fault.
     std::string space(const std::string& part) {
-        const std::string name = word(part);
+        const std::string name = request_.word(part);
         if (!name.empty()) {
             if (config_.config->getColorSpace(name.c_str())) return name;
             std::vector<std::string> known = names_.spaces;
@@ -109,7 +104,7 @@ private:
     }
 
     bool append_view(ocio::GroupTransform& group, const std::string& source) {
-        std::string display = word("display");
+        std::string display = request_.word("display");
         if (display.empty() && !names_.views.empty()) display = names_.views.front().first;
         std::vector<std::string> displays;
         const std::vector<std::string>* views = nullptr;
@@ -121,7 +116,7 @@ private:
             fault_ = unknown("display", config_.name, "display", display, displays);
             return false;
         }
-        std::string view = word("view");
+        std::string view = request_.word("view");
         if (view.empty()) view = config_.config->getDefaultView(display.c_str());
         if (std::ranges::find(*views, view) == views->end()) {
             fault_ =
@@ -132,13 +127,13 @@ private:
         transform->setSrc(source.c_str());
         transform->setDisplay(display.c_str());
         transform->setView(view.c_str());
-        if (word("looks").empty()) group.appendTransform(transform);
+        if (request_.word("looks").empty()) group.appendTransform(transform);
         else return append_with_looks(group, transform);
         return true;
     }
 
     bool append_with_looks(ocio::GroupTransform& group, const ocio::DisplayViewTransformRcPtr& view) {
-        for (const std::string& name : names_of_looks(word("looks")))
+        for (const std::string& name : names_of_looks(request_.word("looks")))
             if (std::ranges::find(names_.looks, name) == names_.looks.end()) {
                 fault_ = unknown("looks", config_.name, "look", name, names_.looks);
                 return false;
@@ -146,7 +141,7 @@ private:
         const auto pipeline = ocio::LegacyViewingPipeline::Create();
         pipeline->setDisplayViewTransform(view);
         pipeline->setLooksOverrideEnabled(true);
-        pipeline->setLooksOverride(word("looks").c_str());
+        pipeline->setLooksOverride(request_.word("looks").c_str());
         group.appendTransform(pipeline->getProcessor(config_.config)->createGroupTransform());
         return true;
     }
@@ -182,7 +177,7 @@ std::variant<OcioConfig, ColorFault> open_config(std::string path) {
     if (is_of_variable) config.name += " of $OCIO";
     const bool is_file = !path.empty() && !is_config_address(path);
     if (std::error_code failure; is_file && !fs::is_regular_file(path, failure))
-        return ColorFault{"", config.name + " does not exist, or is no file"};
+        return ColorFault{"", config.name + " does not exist, or is not a file"};
     if (is_file) config.file = path;
     try {
         if (path.empty()) {
@@ -229,7 +224,7 @@ std::variant<ocio::ConstProcessorRcPtr, ColorFault> processor_of(const OcioConfi
 }
 
 fs::path escaped_file(const OcioConfig& config, const std::vector<fs::path>& files) {
-    const fs::path home = config.file.parent_path();
+    const fs::path home = fs::absolute(config.file.empty() ? "." : config.file).parent_path();
     std::vector<fs::path> folders{home};
     for (int i = 0; i < config.config->getNumSearchPaths(); ++i)
         folders.push_back(

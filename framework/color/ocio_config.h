@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "framework/color/color_transform.h"
+#include "framework/color/color_request.h"
 
 namespace aftershade {
 

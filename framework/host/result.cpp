@@ -121,6 +121,7 @@ void Result::write(const std::filesystem::path& path, const WriteOptions& option
         const CaptureReader unused(sequence, {}, {});
         FrameResult result;
         result.images = data_->frame->images;
+        result.has_srgb_display = data_->frame->has_srgb_display;
         write_outputs(outputs, result, *data_->capture, unused);
     });
 }

@@ -6,7 +6,7 @@
 #include "framework/base/option.h"
 #include "framework/base/text.h"
 #include "framework/capture/channel_names.h"
-#include "framework/color/color_transform.h"
+#include "framework/color/color_request.h"
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
 #include "framework/image/role.h"

@@ -23,6 +23,7 @@ struct FrameResult {
     std::optional<Window> region;             ///< the part of the display window that was requested
     std::vector<std::string> messages;        ///< what native code logged
     std::optional<FrameTelemetry> telemetry;  ///< where it was requested
+    bool has_srgb_display = true;             ///< see has_srgb_display() (framework/look/color_requests.h)
     std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
 };
 

@@ -8,6 +8,7 @@
 #include "framework/base/error.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
+#include "framework/look/color_requests.h"
 #include "framework/look/pixel_shape.h"
 #include "framework/render/draw_with.h"
 #include "framework/render/graph_builder.h"
@@ -219,6 +220,7 @@ PendingFrame PipelineRenderer::begin(const FrameInputs& frame, const std::vector
     PendingFrame pending(context_);
     pending.is_timed = timed;
     FrameResult& result = pending.result;
+    result.has_srgb_display = has_srgb_display(pipeline_);
     result.messages = natives_.take_messages();
     const float aspect = frame.capture->header.pixel_aspect;
     if (aspect != std::exchange(aspect_, aspect))

@@ -230,7 +230,8 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
         if (extension(path) != ".exr") {
             const Image picture = display_picture(result, capture);
             if (!result.images.contains(kDisplayRole)) written.share_cut = share_above_1(picture);
-            write_png(path, picture, png_text(options), {true, capture.header.pixel_aspect});
+            write_png(path, picture, png_text(options),
+                      {result.has_srgb_display, capture.header.pixel_aspect});
         } else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
             written.warnings.push_back(std::move(lost));
         written.paths.push_back(path);
