@@ -24,7 +24,7 @@ inline constexpr const char* kStorePattern =
 /// "<digest>.exr".
 std::string stored_name(const std::string& digest);
 
-/// The SHA-256 of a file; "" where it is no regular file, is larger than a stored image or cannot be read.
+/// The SHA-256 of a file; "" where it is not a regular file, is larger than a stored image or cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 class GoldenStore {
