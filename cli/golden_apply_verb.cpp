@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <iterator>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,8 +31,8 @@ struct ApplyArguments {
     std::string file, commits, author, approvers;
 };
 
-/// Those of the commits' messages, oldest first. Before each message stands a line of its author, which begins with a NUL: no
-/// line of a message has one.
+/// Those of the commits' messages, oldest first. Before each message stands a line of its author, which
+/// begins with a NUL: no line of a message has one.
 std::vector<GoldenDecision> decisions_of_commits(const fs::path& folder, const std::string& commits) {
     const std::vector<std::string> log =
         lines_of_git(folder, {"log", "--no-show-signature", "--reverse", "--no-walk=unsorted",

@@ -5,6 +5,11 @@
 
 #include "cli/golden_options.h"
 
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace aftershade::cli {
 
 /// `aftershade golden approve` of the suite, as its sidecars name it, whichever command approves.
