@@ -175,8 +175,13 @@ TEST_P(EveryEffectsGraph, StaysWhereOnlyContentsChange) {
     EXPECT_EQ(graphs_of({}, changes), 1);
 }
 
+/// But for what OpenColorIO makes a transform of: its tests change the words and the files.
 TEST_P(EveryEffectsGraph, IsBuiltAgainForEachDefineConditionAndCount) {
-    for (const ParamSpec* spec : form_params(manifest())) EXPECT_TRUE(is_looked_at(*spec)) << spec->name;
+    for (const ParamSpec* spec : form_params(manifest())) {
+        if (spec->ocio.empty()) {
+            EXPECT_TRUE(is_looked_at(*spec)) << spec->name;
+        }
+    }
 }
 
 TEST_P(EveryEffectsGraph, IsBuiltAgainForEachOptionalInputThatComesOrGoes) {

@@ -78,7 +78,8 @@ TEST(UnknownCommand, IsNamedWithTheOneThatWasMeant) {
     EXPECT_EQ(golden.err, "aftershade: error: 'aprove' is not a command; did you mean 'approve'?\n");
     EXPECT_EQ(
         aftershade({"golden", "xyzzyx"}).err,
-        "aftershade: error: 'xyzzyx' is not a command; choose from run, approve, report, comment and init\n");
+        "aftershade: error: 'xyzzyx' is not a command; choose from run, approve, report, comment, init, "
+        "explain, serve and apply-approvals\n");
 }
 
 }  // namespace

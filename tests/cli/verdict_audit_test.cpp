@@ -145,7 +145,7 @@ TEST_F(VerdictAudit, OfAnApprovalWhoseCaptureIsAbsent) {
     fs::remove(folder_ / "in_0001.exr");
     const CommandResult result = golden({"approve", "golden.json", "--filter", "corner"});
     EXPECT_EQ(result.exit_code, 4) << result.err;
-    EXPECT_NE(result.err.find("FAILED corner: not rendered, its goldens are as they were"), std::string::npos)
+    EXPECT_NE(result.err.find("FAILED corner: not approved, its goldens are as they were"), std::string::npos)
         << result.err;
     EXPECT_NE(result.err.find("(set \"optional\": true in the case if its capture may be missing)"),
               std::string::npos)

@@ -83,11 +83,11 @@ TEST(ParamTypes, AreThoseOfCoreThenThoseAboveIt) {
     Diagnostics diagnostics;
     parse_param_spec("p", test::parsed(R"({"type": "flaot", "default": 1, "doc": "."})"), diagnostics,
                      param_types());
-    EXPECT_EQ(
-        test::lines_of(diagnostics),
-        test::Lines{"doc.json:1:10: error: 'type' is 'flaot' but must be 'float', 'int', 'bool', 'enum', "
-                    "'angle', 'color', 'vec2', 'vec3', 'vec4', 'curve', 'file', 'table', 'objects' or "
-                    "'scattering_profile'; did you mean 'float'?"});
+    EXPECT_EQ(test::lines_of(diagnostics),
+              test::Lines{
+                  "doc.json:1:10: error: 'type' is 'flaot' but must be 'float', 'int', 'bool', 'enum', "
+                  "'angle', 'color', 'vec2', 'vec3', 'vec4', 'curve', 'file', 'table', 'objects', 'text' or "
+                  "'scattering_profile'; did you mean 'float'?"});
 }
 
 TEST(ParamTypes, OfATableEntryAreDeclaredToShaders) {

@@ -52,6 +52,7 @@ function walk(name, work, { words = [capture], mayFail = false, ...options } = {
     }
   });
 }
+const canProbeVideo = () => ["ffmpeg", "ffprobe"].every((program) => spawnSync(program, ["-version"]).status === 0);
 const state = (page) => page.evaluate(() => window.aftershade.store.state);
 const steps = async (page) => (await state(page)).steps.map(({ effect }) => effect);
 const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`) });
@@ -483,7 +484,7 @@ for (const [colorScheme, width, height] of [
       await name.press("Enter");
       await dialog.getByText("is not a name for the export").waitFor();
       await axe(page, "export");
-      const hasVideo = spawnSync("ffprobe", ["-version"]).status === 0;
+      const hasVideo = canProbeVideo();
       for (const [format, file] of [...(hasVideo ? [["mp4", "film.mp4"]] : []), ["png", "film"]]) {
         await name.fill("film");
         await dialog.getByLabel("Format").selectOption(format);
@@ -703,7 +704,7 @@ walkBlender("goes from a frame of Blender to a film by hand, without a line of J
   await page.locator(".save-dialog").waitFor({ state: "hidden" });
   await page.keyboard.press("x");
   const dialog = page.getByRole("dialog", { name: "Export" });
-  for (const format of spawnSync("ffprobe", ["-version"]).status === 0 ? ["png", "mp4"] : ["png"]) {
+  for (const format of canProbeVideo() ? ["png", "mp4"] : ["png"]) {
     await dialog.getByLabel("Format").selectOption(format);
     await dialog.getByLabel("Name of the export").press("Enter");
     await dialog.getByText(`Wrote ${join(folder, format === "png" ? "shot" : "shot.mp4")}`, { exact: true }).waitFor();
