@@ -46,7 +46,7 @@ std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter)
         words.push_back(test.name);
         words.insert(words.end(), test.tags.begin(), test.tags.end());
     }
-    return "fits no case's name or tag" + did_you_mean(filter, words);
+    return "matches no case's name or tag" + did_you_mean(filter, words);
 }
 
 void check_words(const GoldenOptions& options, const GoldenSuite& suite, Diagnostics& diagnostics) {

@@ -40,7 +40,7 @@ struct Inspection {
 
     /// The fixed roles that the capture lacks; all where no profile fits.
     std::vector<std::string> missing_roles() const;
-    /// Of those, by role: the settings of the producer that write it.
+    /// The producer's settings that write these roles, by role.
     std::map<std::string, std::string> remedies() const;
     /// The first channel that could not be read for a fault of the file; nullptr where all could.
     const InspectedChannel* first_unreadable() const;

@@ -38,7 +38,7 @@ void add_profiles(const Sequence& sequence, std::set<fs::path>& files) {
             files.insert(entry.path());
 }
 
-/// Of one frame alone, or of all with their neighbours.
+/// The files of frame `only`, else those of all frames and their neighbours.
 std::set<fs::path> files_of(const GoldenCase& test, std::optional<int> only) {
     Diagnostics faults;
     const std::optional<Sequence> sequence = open_sequence(test.capture.string(), faults);

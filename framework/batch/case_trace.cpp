@@ -27,7 +27,8 @@ std::string short_hash(std::string_view bytes) {
     return content_hash(bytes).substr(0, kDigits);
 }
 
-/// Of the values, and not of the file: versions of zlib pack the same pixels differently.
+/// A hash of the pixels' values. Hashes of files would differ, since versions of zlib pack pixels
+/// differently.
 std::string pixel_hash(const fs::path& image) {
     const ExrFile file(image);
     const ExrPart& part = file.parts().front();

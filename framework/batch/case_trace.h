@@ -38,8 +38,8 @@ public:
     /// Files are named from the folder of the suite, but shipped ones from the shipped data.
     CaseTracer(const GoldenRenderOptions& options, std::filesystem::path suite_folder);
 
-    /// Of the picture of one frame. Of a look with faults, and of files that cannot be read, there is
-    /// nothing.
+    /// The parts of one frame's picture. A look with faults has none, and files that cannot be read are
+    /// left out.
     CaseParts parts(const GoldenCase& test, int frame);
     /// "bloom.color": each output of each step, in the look's order.
     std::vector<std::string> taps(const GoldenCase& test);

@@ -76,7 +76,7 @@ std::vector<GoldenDecision> resolve_decisions(const GoldenSuite& suite,
         }
         if (!fits)
             diagnostics.error({"decision about '" + decision.test + "'"},
-                              "fits no case's name or tag; name a case of the suite");
+                              "matches no case's name or tag; name a case of the suite");
     }
     return resolved;
 }

@@ -30,8 +30,8 @@ struct GoldenApplied {
     std::vector<std::string> kept;  ///< why cases keep their goldens: "lens: ...", a line for each reason
 };
 
-/// Every decision with one case, the last of a case alone. A fault for a name that fits no case, and for
-/// someone who may not approve it: nothing is applied in part.
+/// The last decision about each case; a decision with a glob becomes one for each case that it matches. A
+/// name that matches no case is a fault, and so is an author who may not approve: nothing is applied in part.
 std::vector<GoldenDecision> resolve_decisions(const GoldenSuite& suite,
                                               const std::vector<GoldenDecision>& decisions,
                                               const std::optional<GoldenApprovers>& approvers,

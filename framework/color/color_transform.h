@@ -11,7 +11,7 @@
 namespace aftershade {
 
 struct ColorTransform {
-    /// Of the sampler2D "<function>_table", which texelFetch alone reads, and of `vec3 function(vec3 rgb)`.
+    /// Declares the sampler2D "<function>_table", which only texelFetch reads, and `vec3 function(vec3 rgb)`.
     std::string glsl;
     std::vector<float> texels;  ///< whole rows of kColorTableRow texels, RGBA
     std::vector<std::filesystem::path>
@@ -21,7 +21,7 @@ struct ColorTransform {
 /// Reads its files again each time. [thread-safe]
 std::variant<ColorTransform, ColorFault> make_color_transform(const ColorRequest& request);
 
-/// Of the config of that path, as in a request.
+/// The names in the config at that path, which is as in a request.
 std::variant<ColorNames, ColorFault> color_names(const std::string& path);
 
 /// Whether this program was built with OpenColorIO.

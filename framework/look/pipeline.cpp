@@ -252,7 +252,7 @@ std::string remedies(const std::string& role, const CaptureHeader& header, const
     return text;
 }
 
-/// Of any role: a file of its own, or the names of its channels.
+/// What helps whichever role is missing: a file of its own, or the names of its channels.
 std::string general_remedies(const std::string& role) {
     return advice("", Option::role, role + "=FILE", " reads it from a file of its own; ") +
            "\"channels\": {\"" + role + "\": {\"channels\": [...]}} in capture.json names its channels";

@@ -205,7 +205,7 @@ TEST_F(GoldenExplain, SaysWhatItCannotFindOut) {
     EXPECT_EQ(explain().out, "film: every image has the approved bits\n");
     const CommandResult unknown = suite({"explain", "flim"});
     EXPECT_EQ(unknown.exit_code, 64);
-    EXPECT_NE(unknown.err.find("case flim: error: fits no case's name or tag; did you mean 'film'?"),
+    EXPECT_NE(unknown.err.find("case flim: error: matches no case's name or tag; did you mean 'film'?"),
               std::string::npos)
         << unknown.err;
     // A sidecar of an earlier version has hashes of the whole look and capture alone.

@@ -372,10 +372,10 @@ TEST_F(GoldenRun, EndsWith64ForWrongWordsAndDocuments) {
     EXPECT_NE(filter.err.find("did you mean 'slow'"), std::string::npos) << filter.err;
     const CommandResult filters = run({"--filter", "lens", "--filter", "lends", "--filter", "x/*"});
     EXPECT_EQ(filters.exit_code, 64) << "although one fits";
-    EXPECT_NE(filters.err.find("--filter lends: error: fits no case's name or tag; did you mean 'lens'"),
+    EXPECT_NE(filters.err.find("--filter lends: error: matches no case's name or tag; did you mean 'lens'"),
               std::string::npos)
         << filters.err;
-    EXPECT_NE(filters.err.find("--filter x/*: error: fits no case"), std::string::npos) << filters.err;
+    EXPECT_NE(filters.err.find("--filter x/*: error: matches no case"), std::string::npos) << filters.err;
     EXPECT_EQ(golden({"approve", "golden.json", "--filter", "lends"}).exit_code, 64);
     write_suite(R"("fial": 0.004)");
     const CommandResult document = run();

@@ -19,14 +19,9 @@ export async function openBrowser() {
   });
 }
 
-/** Opens the page as a user does, from a file and without a network. What goes wrong is kept in `page.faults`. */
-export async function openPage(browser, file, options = {}) {
-  const context = await browser.newContext({
-    viewport: { width: 1280, height: 900 },
-    permissions: ["clipboard-read", "clipboard-write"],
-    offline: true,
-    ...options,
-  });
+/** A page at the address in a window of its own. It keeps what goes wrong in `page.faults`, and addresses in `page.requests`. */
+export async function openAt(browser, address, options) {
+  const context = await browser.newContext(options);
   context.setDefaultTimeout(Number(process.env.AFTERSHADE_PAGE_TIMEOUT ?? 60_000)); // for machines that are busy
   const page = await context.newPage();
   page.faults = [];
@@ -34,9 +29,18 @@ export async function openPage(browser, file, options = {}) {
   page.on("pageerror", (error) => page.faults.push(error.message));
   page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
   page.on("request", (request) => page.requests.push(request.url()));
-  await page.goto(`file://${file}`);
+  await page.goto(address);
   return page;
 }
+
+/** Opens the page as a user does, from a file and without a network. */
+export const openPage = (browser, file, options = {}) =>
+  openAt(browser, `file://${file}`, {
+    viewport: { width: 1280, height: 900 },
+    permissions: ["clipboard-read", "clipboard-write"],
+    offline: true,
+    ...options,
+  });
 
 /** The viewer of a case's image, read and drawn. */
 export async function viewerOf(page, name, index = 0) {

@@ -1,6 +1,7 @@
 // `aftershade serve` as a process, and its page in the browser.
 import { spawn } from "node:child_process";
 
+import { openAt } from "./browser.mjs";
 import { program } from "./suite.mjs";
 
 /** {address, end(), kill()} of `aftershade serve`, or of another command that serves, with these words. */
@@ -26,22 +27,9 @@ export async function startServer(words, options, command = ["serve"]) {
   return { address, end, kill: () => child.kill("SIGKILL") };
 }
 
-export async function openServed(browser, address, options = {}) {
-  const context = await browser.newContext({
-    viewport: { width: 1440, height: 900 },
-    reducedMotion: "reduce",
-    ...options,
-  });
-  context.setDefaultTimeout(Number(process.env.AFTERSHADE_PAGE_TIMEOUT ?? 60_000)); // for machines that are busy
-  const page = await context.newPage();
-  page.faults = [];
-  page.requests = [];
-  page.on("pageerror", (error) => page.faults.push(error.message));
-  page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
-  page.on("request", (request) => page.requests.push(request.url()));
-  await page.goto(address);
-  return page;
-}
+export const openServed = (browser, address, options = {}) =>
+  openAt(browser, address, { viewport: { width: 1440, height: 900 }, reducedMotion: "reduce", ...options });
+
 /** Once the picture of the present state is there, at full size. */
 export const drawn = async (page) => {
   await page.waitForFunction(() => window.aftershade.store.state && "scale" in window.aftershade.viewer.canvas.dataset);
