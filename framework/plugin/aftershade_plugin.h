@@ -127,7 +127,7 @@ struct aftershade_params {
     aftershade_status (*get_int)(const aftershade_params* params, const char* name, int64_t* value);
     /* [prepare] */
     aftershade_status (*get_bool)(const aftershade_params* params, const char* name, bool* value);
-    /* Type enum, as the word that the manifest lists; valid until `prepare` returns. [prepare] */
+    /* Types enum, as the word that the manifest lists, and text; valid until `prepare` returns. [prepare] */
     aftershade_status (*get_enum)(const aftershade_params* params, const char* name, const char** value);
     /* Types vec2, vec3, vec4 and color; `count` is 2, 3, 4 and 3. [prepare] */
     aftershade_status (*get_vector)(const aftershade_params* params, const char* name, double* values,

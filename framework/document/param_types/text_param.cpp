@@ -1,4 +1,4 @@
-// A word that the host reads: a name in an OpenColorIO config, which no manifest can list.
+// A name that no manifest can list: of an OpenColorIO config, or one that native code looks up.
 #include "framework/document/grammar.h"
 #include "framework/document/param_type.h"
 #include "framework/document/schema_pieces.h"
@@ -8,17 +8,17 @@ namespace aftershade {
 namespace text_type {
 
 void declare(grammar::Block& declaration, const grammar::Block&) {
-    declaration.keys.push_back(grammar::required(
+    declaration.keys.push_back(grammar::optional(
         "ocio", grammar::choice({"display", "view", "looks", "source", "destination", "correction"}),
-        "The part of the effect's OpenColorIO transform that it says."));
+        "The part of the effect's OpenColorIO transform that it says; none for native code to read."));
 }
 
 void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    spec.ocio = reader.node.find("ocio")->string;
+    if (const Node* const part = reader.node.find("ocio")) spec.ocio = part->string;
 }
 
 std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    if (!node.is_string()) return reader.wrong_kind(node, "a name of the OpenColorIO config, or \"\"");
+    if (!node.is_string()) return reader.wrong_kind(node, "text, or \"\"");
     return node.string;
 }
 
@@ -26,12 +26,12 @@ schema::json literal(const ParamSpec&, const schema::LiteralParts&) {
     return schema::text();
 }
 
-std::string type_text(const ParamSpec&) {
-    return "name in the OpenColorIO config";
+std::string type_text(const ParamSpec& spec) {
+    return spec.ocio.empty() ? "text" : "name in the OpenColorIO config";
 }
 
 schema::json describe(const ParamSpec& spec) {
-    return {{"ocio", spec.ocio}};
+    return spec.ocio.empty() ? schema::json::object() : schema::json{{"ocio", spec.ocio}};
 }
 
 constexpr ParamTypeTraits type() {
