@@ -50,7 +50,7 @@ std::string pixel_hash(const fs::path& image) {
 }
 
 /// A table or a curve may be long.
-std::string short_value(std::string text) {
+std::string short_value(const std::string& text) {
     constexpr std::size_t kMostBytes = 100;
     return text.size() <= kMostBytes ? text : text.substr(0, 60) + "... (hash " + short_hash(text) + ")";
 }
@@ -77,7 +77,7 @@ std::string kind_of_file(const std::string& name) {
     return std::ranges::find(kNative, extension) != kNative.end() ? "native source" : "file";
 }
 
-CaseTracer::CaseTracer(const GoldenRenderOptions& options, fs::path suite_folder)
+CaseTracer::CaseTracer(const GoldenRenderOptions& options, const fs::path& suite_folder)
     : effects_(effect_folders(options.effect_paths), data_path() / "glsl"),
       data_(fs::absolute(data_path()).lexically_normal()),
       suite_folder_(fs::absolute(suite_folder).lexically_normal()) {}

@@ -36,7 +36,7 @@ std::string kind_of_file(const std::string& name);
 class CaseTracer {
 public:
     /// Files are named from the folder of the suite, but shipped ones from the shipped data.
-    CaseTracer(const GoldenRenderOptions& options, std::filesystem::path suite_folder);
+    CaseTracer(const GoldenRenderOptions& options, const std::filesystem::path& suite_folder);
 
     /// The parts of one frame's picture. A look with faults has none, and files that cannot be read are
     /// left out.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -35,7 +36,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t(512) * 1024 * 1024;
 
 std::string hex_color(const DisplayColor& color) {
-    const auto byte = [&](std::size_t c) { return int(std::clamp(color[c], 0.0f, 1.0f) * 255 + 0.5f); };
+    const auto byte = [&](std::size_t c) { return std::lround(std::clamp(color[c], 0.0f, 1.0f) * 255); };
     return fmt::format("#{:02x}{:02x}{:02x}", byte(0), byte(1), byte(2));
 }
 

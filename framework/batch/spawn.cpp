@@ -3,8 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-extern char** environ;
-
 namespace aftershade {
 
 namespace {
@@ -33,7 +31,7 @@ SpawnedWorker spawn_worker(const WorkerCommand& command) {
     child.environment = child_environment(command);
     child.descriptors = {command.input, shares ? STDOUT_FILENO : out.write.get(),
                          shares ? STDERR_FILENO : error.write.get(), status.write.get()};
-    child.limits = command.limits;
+    child.limits = static_cast<const ChildLimits&>(command.limits);
     child.leads_group = true;
     SpawnedWorker spawned;
     spawned.process = spawn_child(child);

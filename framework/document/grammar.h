@@ -184,7 +184,7 @@ struct LiteralForms {
 /// As parse_param_value() takes it; a number in the spec's unit, or a string in any that converts to it.
 Form literal(ParamSpec spec, LiteralForms forms = {});
 /// A key of the spec's name, doc and default.
-Key field(ParamSpec spec, LiteralForms forms = {}, bool is_required = false);
+Key field(const ParamSpec& spec, LiteralForms forms = {}, bool is_required = false);
 /// "linear", "step", "smooth": how animated values go from one key to the next.
 const std::vector<std::string>& interpolation_names();
 

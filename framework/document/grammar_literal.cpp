@@ -190,7 +190,7 @@ Form literal(ParamSpec spec, LiteralForms forms) {
     return make_form<Literal>(std::move(spec), std::move(forms));
 }
 
-Key field(ParamSpec spec, LiteralForms forms, bool is_required) {
+Key field(const ParamSpec& spec, LiteralForms forms, bool is_required) {
     Key key = optional(spec.name, literal(spec, std::move(forms)), spec.doc,
                        format_value(spec, spec.default_value));
     key.required = is_required;

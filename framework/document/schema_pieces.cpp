@@ -21,10 +21,10 @@ std::string unit_pattern(const std::string& unit) {
 
 }  // namespace
 
-json object(json properties, std::vector<std::string> required) {
+json object(json properties, const std::vector<std::string>& required) {
     json result = {
         {"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
-    if (!required.empty()) result["required"] = std::move(required);
+    if (!required.empty()) result["required"] = required;
     return result;
 }
 
@@ -108,7 +108,7 @@ json object_key() {
     return key;
 }
 
-json document(const std::string& title, json properties, std::vector<std::string> required) {
+json document(const std::string& title, const json& properties, std::vector<std::string> required) {
     json all = {{"$schema", text()},
                 {"aftershade", {{"const", 1}, {"description", "Version of the format."}}}};
     all.update(properties);

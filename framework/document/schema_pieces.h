@@ -15,7 +15,7 @@ inline constexpr const char* kDraft = "https://json-schema.org/draft/2020-12/sch
 inline constexpr const char* kSnakeCase = "^[a-z][a-z0-9_]*$";
 
 /// An object with these members and no others.
-json object(json properties, std::vector<std::string> required = {});
+json object(json properties, const std::vector<std::string>& required = {});
 /// Members of any snake_case name, each as `value`.
 json named(const json& value);
 json array_of(json items, int min = 0, int max = -1);
@@ -57,6 +57,6 @@ private:
 /// Id of an object, ids and ranges of ids, or a Cryptomatte name.
 json object_key();
 /// Head of a document: "$schema" of the schema itself, title, and "aftershade": 1 among the properties.
-json document(const std::string& title, json properties, std::vector<std::string> required);
+json document(const std::string& title, const json& properties, std::vector<std::string> required);
 
 }  // namespace aftershade::schema

@@ -19,7 +19,7 @@ std::vector<fs::path> rooms_of_effects(const fs::path& folder) {
     return {folder, folder / "reference"};
 }
 
-EffectRegistry::EffectRegistry(std::vector<fs::path> folders, fs::path glsl_folder)
+EffectRegistry::EffectRegistry(const std::vector<fs::path>& folders, fs::path glsl_folder)
     : glsl_folder_(std::move(glsl_folder)) {
     for (const fs::path& folder : folders)
         for (const fs::path& room : rooms_of_effects(folder)) add_effects_in(room);

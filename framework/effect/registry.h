@@ -25,7 +25,7 @@ std::vector<std::filesystem::path> rooms_of_effects(const std::filesystem::path&
 class EffectRegistry {
 public:
     /// Modules are read from `glsl_folder`, empty for the shipped one.
-    explicit EffectRegistry(std::vector<std::filesystem::path> folders,
+    explicit EffectRegistry(const std::vector<std::filesystem::path>& folders,
                             std::filesystem::path glsl_folder = {});
 
     /// Ids of all effects, sorted. The first folder wins where two have an effect of one id.

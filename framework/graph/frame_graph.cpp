@@ -55,7 +55,7 @@ BufferHandle FrameGraph::create_buffer(std::string name, const BufferDesc& desc,
     return add_buffer({.name = std::move(name), .desc = desc, .clear = std::move(clear)});
 }
 
-TextureHistory FrameGraph::create_history(std::string name, const gpu::TextureDesc& desc,
+TextureHistory FrameGraph::create_history(const std::string& name, const gpu::TextureDesc& desc,
                                           const TextureOptions& options) {
     const TextureHandle current = create_texture(name, desc, options);
     const TextureHandle previous =
@@ -63,7 +63,7 @@ TextureHistory FrameGraph::create_history(std::string name, const gpu::TextureDe
     return {previous, current};
 }
 
-BufferHistory FrameGraph::create_history_buffer(std::string name, const BufferDesc& desc,
+BufferHistory FrameGraph::create_history_buffer(const std::string& name, const BufferDesc& desc,
                                                 std::optional<std::vector<std::uint32_t>> clear) {
     const BufferHandle current = create_buffer(name, desc, std::move(clear));
     const BufferHandle previous =

@@ -182,9 +182,9 @@ public:
     BufferHandle create_buffer(std::string name, const BufferDesc& desc,
                                std::optional<std::vector<std::uint32_t>> clear = {});
     /// The texture to write takes `name`, what it was in the frame before is called `<name>.prev`.
-    TextureHistory create_history(std::string name, const gpu::TextureDesc& desc,
+    TextureHistory create_history(const std::string& name, const gpu::TextureDesc& desc,
                                   const TextureOptions& options = {});
-    BufferHistory create_history_buffer(std::string name, const BufferDesc& desc,
+    BufferHistory create_history_buffer(const std::string& name, const BufferDesc& desc,
                                         std::optional<std::vector<std::uint32_t>> clear = {});
 
     /// Appends a pass and returns the new versions of what it writes. Passes run in the order of the calls.

@@ -238,7 +238,7 @@ Error ObjectMatches::placed(const UnknownObject& error) const {
     for (const Entry& entry : entries_)
         if (std::ranges::find(entry.keys, error.object(), &TableKey::name) != entry.keys.end())
             return Error(error.kind(), entry.user + ": " + error.what());
-    return error;
+    return static_cast<const Error&>(error);
 }
 
 std::vector<ObjectSighting> ObjectMatches::take_sightings() {

