@@ -142,6 +142,31 @@ void remove_part(std::string& text, const List& list, std::size_t index) {
     if (lone_comma != std::string::npos) text.erase(lone_comma, 1);
 }
 
+void set_member(std::string& text, const SpanNode& object, const std::string& key, const Json& value);
+
+/// The text of an object of several lines with other members. Each stays where it is, and so do the comments
+/// beside it; new ones come before the member that follows them in `value`.
+std::string with_members(std::string text, const Json& value) {
+    std::vector<std::string> gone;
+    for (const SpanMember& member : spans_of(text).members)
+        if (!value.contains(member.key)) gone.push_back(member.key);
+    // The last one is not taken out before another one is there: an empty object would lose its lines.
+    for (auto item = value.rbegin(); item != value.rend(); ++item) {
+        const SpanNode object = spans_of(text);
+        if (object.find(item.key())) {
+            set_member(text, object, item.key(), *item);
+            continue;
+        }
+        const auto next = item.base();
+        const SpanMember* follower = next == value.end() ? nullptr : object.find(next.key());
+        const std::size_t at =
+            follower ? std::size_t(follower - object.members.data()) : object.members.size();
+        insert_part(text, list_of(object), at, Json(item.key()).dump() + ": " + text_of(*item));
+    }
+    for (const std::string& key : gone) set_member(text, spans_of(text), key, nullptr);
+    return text;
+}
+
 /// `value` null: the key goes.
 void set_member(std::string& text, const SpanNode& object, const std::string& key, const Json& value) {
     if (object.kind != SpanNode::Kind::object) refuse("'" + key + "' has its place in an object");
@@ -154,7 +179,12 @@ void set_member(std::string& text, const SpanNode& object, const std::string& ke
         const Span span = member->value.span;
         // The same value in the author's own spelling stays as it was written.
         const Json before = Json::parse(span.of(text), nullptr, false, true);
-        if (before != value) text.replace(span.begin, span.end - span.begin, text_of(value));
+        if (before == value) return;
+        const bool has_lines = span.of(text).find('\n') != std::string_view::npos;
+        const bool is_inside =
+            has_lines && value.is_object() && !value.empty() && before.is_object() && !before.empty();
+        text.replace(span.begin, span.end - span.begin,
+                     is_inside ? with_members(std::string(span.of(text)), value) : text_of(value));
         return;
     }
     insert_part(text, list_of(object), object.members.size(), Json(key).dump() + ": " + text_of(value));

@@ -54,6 +54,39 @@ TEST(LookEdits, LeaveAnEqualValueInItsAuthorsSpelling) {
     EXPECT_EQ(edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", 2.8}}), kLook);
 }
 
+TEST(LookEdits, ChangeAnObjectOfSeveralLinesMemberByMember) {
+    const std::string text = R"({ "aftershade": 1, "steps": [
+  { "effect": "dof", "params": { "focus_distance": {
+      "keys": {
+        "1": "2 m", // Ball
+        "24": "5.0 m" // Suzanne
+      },
+      "interpolation": "smooth" // gently
+  } } } ] }
+)";
+    const auto with = [&](const char* value) {
+        return edited(
+            text, {{"op", "set"}, {"step", 0}, {"param", "focus_distance"}, {"value", Json::parse(value)}});
+    };
+    const auto replaced = [&](const std::string& before, const std::string& after) {
+        std::string expected = text;
+        return expected.replace(expected.find(before), before.size(), after);
+    };
+    EXPECT_EQ(with(R"({"keys": {"1": "3 m", "24": "5.0 m"}, "interpolation": "smooth"})"),
+              replaced("\"2 m\"", "\"3 m\""));
+    EXPECT_EQ(with(R"({"keys": {"1": "2 m", "12": 4, "24": "5.0 m"}, "interpolation": "smooth"})"),
+              replaced("\"24\":", "\"12\": 4,\n        \"24\":"))
+        << "in the order of the frames";
+    EXPECT_EQ(with(R"({"keys": {"1": "2 m"}, "interpolation": "smooth"})"),
+              replaced("\"2 m\", // Ball\n        \"24\": \"5.0 m\" // Suzanne\n", "\"2 m\" // Ball\n"));
+    const std::string eased = with(
+        R"({"keys": {"1": {"value": "2 m", "interpolation": "step"}, "24": "5.0 m"}, "interpolation": "smooth"})");
+    EXPECT_EQ(eased, replaced("\"2 m\"", R"({ "value": "2 m", "interpolation": "step" })"));
+    const std::string moved = with(R"({"keys": {"30": "5.0 m"}})");
+    EXPECT_EQ(read(moved)["steps"][0]["params"]["focus_distance"],
+              Json::parse(R"({"keys": {"30": "5.0 m"}})"));
+}
+
 TEST(LookEdits, PutANewKeyAfterTheLastOneInItsOwnForm) {
     const std::string text =
         edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "quality"}, {"value", "high"}});
