@@ -85,7 +85,7 @@ dialog.node.addEventListener("added", async ({ detail }) => {
   list.focus(detail.at);
   notify(`${list.cards[detail.at]?.title.textContent} added as step ${detail.at + 1}`);
 });
-const text = new TextView(store);
+const text = new TextView(store, names);
 const faults = new Faults(store, (line, column) => {
   showPanel("text");
   text.goTo(line, column);
@@ -282,6 +282,9 @@ store.addEventListener("change", () => {
 store.addEventListener("fail", ({ detail }) => notify(detail.message, true));
 let measuring;
 viewer.addEventListener("picture", ({ detail }) => {
+  const fault = detail.times?.fault;
+  list.showFault(fault);
+  if (fault) return viewer.setMeasured(detail.times);
   costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   shaders.setFault("");
   viewer.setMeasured(detail.times);
