@@ -212,6 +212,7 @@ const shortcuts = new Shortcuts([
   { group: "Look", keys: ["Ctrl+Z"], words: "Undo", run: () => store.undo(), inText: "edited" },
   { group: "Look", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], words: "Redo", run: () => store.redo(), inText: "edited" },
   { group: "Look", keys: ["T"], words: "Steps, text or shaders", run: nextPanel },
+  { group: "Look", keys: ["Ctrl+Space"], words: "In a text: list what fits" },
   { group: "Look", keys: ["X"], words: "Export images, a video, a still, a contact sheet or the look", run: () => exporting.open() },
   { group: "Look", keys: ["Ctrl+Shift+C"], words: "Copy the command", run: copyCommand, inText: true },
   { group: "Steps", keys: ["A"], words: "Add a step", run: openAdd },
@@ -230,6 +231,7 @@ const shortcuts = new Shortcuts([
   { group: "Curves", keys: ["↑", "↓"], words: "Move the key by a hundredth of the slider's range; with Shift by a tenth" },
   { group: "Curves", keys: ["Enter"], words: "Go to the key's frame" },
   { group: "Curves", keys: ["Delete"], words: "Remove the key" },
+  { group: "Curves", keys: ["↑", "↓", "←", "→"], words: "Move the handle by 5 %; with Shift by 20 %" },
   { group: "Picture", keys: ["P"], words: "Go to the picture", run: () => viewer.canvas.focus() },
   { group: "Picture", keys: ["↑", "↓", "←", "→"], words: "Move the probe by 1 px; with Shift 10 px" },
   { group: "Picture", keys: ["Ctrl+arrows"], words: "Pan" },
@@ -284,6 +286,7 @@ let measuring;
 viewer.addEventListener("picture", ({ detail }) => {
   const fault = detail.times?.fault;
   list.showFault(fault);
+  clearTimeout(measuring);
   if (fault) return viewer.setMeasured(detail.times);
   costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   shaders.setFault("");
@@ -293,7 +296,6 @@ viewer.addEventListener("picture", ({ detail }) => {
   list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;
   // After a pause: the next picture of a drag does not wait for them.
-  clearTimeout(measuring);
   measuring = setTimeout(() => {
     histogram.load(viewer.frame);
     const isFinal = viewer.view === "final" && viewer.exposure === 0;

@@ -314,3 +314,29 @@ inPage("names, blends, disables and removes a step", async (page) => {
   await page.keyboard.press("Delete");
   assert.equal((await changed(page, before)).steps.length, 3);
 });
+
+inPage("draws a line where a dragged step lands", async (page) => {
+  await step(page, "bokeh").locator(".opener").click(); // closes it, so that all heads are in sight
+  const grip = await step(page, "bokeh").locator(".grip").boundingBox(),
+    color = (name, pseudo) =>
+      page.locator(name).evaluate((node, part) => {
+        const { content, backgroundColor, height } = getComputedStyle(node, part);
+        return content === "none" ? null : [backgroundColor, height];
+      }, pseudo),
+    accent = await page.locator(".step").first().evaluate((node) => {
+      const probe = node.appendChild(document.createElement("i"));
+      probe.style.color = "var(--accent)";
+      const { color: found } = getComputedStyle(probe);
+      probe.remove();
+      return found;
+    });
+  await page.mouse.move(grip.x + 8, grip.y + 8);
+  await page.mouse.down();
+  const { y } = await step(page, "vignette").boundingBox();
+  await page.mouse.move(grip.x + 8, y + 2, { steps: 3 });
+  assert.deepEqual(await color('.step[data-step="vignette"]', "::before"), [accent, "3px"]);
+  assert.equal(await color('.step[data-step="color_grade"]', "::before"), null);
+  await page.mouse.move(grip.x + 8, y + 200, { steps: 3 });
+  assert.deepEqual(await color("ol.steps", "::after"), [accent, "3px"]);
+  await page.mouse.up();
+});

@@ -5,7 +5,7 @@ import { copyFileSync, mkdtempSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { capture, changed, compareWithPng, environment, folder, frame, inPage, LOOK, middle, open, opened, root, row, runPicture, serveOver, state, textOf } from "./look_page.mjs";
+import { capture, changed, compareWithPng, environment, folder, frame, inPage, LOOK, middle, open, opened, root, row, runPicture, serveOver, state, step, textOf } from "./look_page.mjs";
 import { drawn } from "./served.mjs";
 import { program } from "./suite.mjs";
 
@@ -311,3 +311,60 @@ inPage(
   },
   { own: true },
 );
+
+inPage("says in a legend what false colours mean, and of pictures nothing", async (page) => {
+  const legend = page.locator(".legend");
+  for (const [view, words] of [
+    ["role:depth", /near far [\d.]+ to [\d.]+ m; nothing hit: /],
+    ["role:velocity", /px a frame; rim of the wheel: [\d.]+ px/],
+    ["role:object_id", /ids?: .*a colour each, 0 is black/],
+    ["tap:color_grade.color", /linear, shown at/],
+  ]) {
+    await page.getByLabel("View", { exact: true }).selectOption(view);
+    await drawn(page);
+    await page.waitForFunction(
+      (text) => new RegExp(text).test(document.querySelector(".legend").innerText.replaceAll(/\s+/g, " ")),
+      words.source,
+    );
+  }
+  await page.getByLabel("View", { exact: true }).selectOption("final");
+  await drawn(page);
+  assert.equal(await legend.isVisible(), false);
+});
+
+inPage("compares with the picture before a step, which is that of the steps before it", async (page) => {
+  await page.getByLabel("Compare with").selectOption("before:view_transform");
+  await drawn(page);
+  await frame(page);
+  const right = await middle(page, 60);
+  assert.equal(await page.locator(".side.right").innerText(), "before view_transform");
+  await page.getByLabel("Compare with").selectOption("");
+  await page.getByLabel("Enable view_transform").uncheck();
+  await drawn(page);
+  await frame(page);
+  assert.deepEqual(await middle(page, 60), right);
+  const views = await page.getByLabel("View", { exact: true }).locator("option").allInnerTexts();
+  assert.ok(views.includes("before vignette") && !views.includes("before view_transform"), views.join());
+});
+
+inPage("shows the capture and marks the step where the frame lacks what the step takes", async (page) => {
+  const set = (value) =>
+    page.evaluate(
+      (wanted) => window.aftershade.store.edit([{ op: "set", step: 1, param: "exposure", value: wanted }]),
+      value,
+    );
+  await set({ from: "luminance", object: 4000 });
+  const mark = step(page, "color_grade").locator(".step-fault");
+  await mark.getByText(/object 4000 has no pixel with light/).waitFor();
+  await drawn(page);
+  await frame(page);
+  assert.match(await page.locator(".badge").innerText(), /^capture without steps: .*object 4000/);
+  const shown = await middle(page);
+  assert.equal(await step(page, "vignette").locator(".step-fault").isVisible(), false);
+  await set(0.3);
+  await mark.waitFor({ state: "hidden" });
+  await page.getByLabel("View", { exact: true }).selectOption("before");
+  await drawn(page);
+  await frame(page);
+  assert.deepEqual(shown, await middle(page));
+});

@@ -48,7 +48,7 @@ inPage("lists the faults of the text at their lines while the last good picture 
   const faults = page.locator(".faults li");
   assert.match(await faults.first().innerText(), /^7:\d+[^]*vignete/);
   assert.match(await page.locator(".badge").innerText(), /last good picture/);
-  assert.equal(await page.locator(".numbers .faulty").first().innerText(), "7");
+  assert.equal(await page.locator("#panel-text .faulty .number").first().innerText(), "7");
   await page.evaluate(() => window.aftershade.settled()); // a coarse picture may come first
   assert.deepEqual(await colors(), good);
   await faults.first().getByRole("button").click();

@@ -188,7 +188,7 @@ withTint("shows GLSL's faults at their file and line, and keeps the last good pi
   const fault = page.locator(".shader-faults li");
   await fault.first().waitFor();
   assert.match(await fault.first().innerText(), /tint\.frag:6[^]*lihgt/);
-  assert.equal(await page.locator("#panel-shaders .faulty").first().innerText(), "6");
+  assert.equal(await page.locator("#panel-shaders .faulty .number").first().innerText(), "6");
   assert.deepEqual(await centre(page), good);
   await fault.first().getByRole("button").click();
   assert.equal(await area.evaluate((node) => node.value.slice(0, node.selectionStart).split("\n").length), 6);
@@ -236,4 +236,19 @@ inPage("shows shipped shaders, and says why they cannot be written", async (page
   assert.equal(await area.evaluate((node) => node.readOnly), true);
   assert.match(await page.locator("#shader-help").innerText(), /comes with Aftershade[^]*--effect-path/);
   assert.equal(await page.getByRole("button", { name: "Save shader" }).isDisabled(), true);
+});
+
+withTint("completes the effect's parameters and images and functions of GLSL in a shader", async (page) => {
+  const area = await openShader(page);
+  await area.focus();
+  await page.keyboard.press("Control+End");
+  await page.keyboard.type("par");
+  const offered = () => page.locator("#panel-shaders .completion li").allInnerTexts();
+  assert.equal((await offered())[0], "param.amount");
+  await page.keyboard.press("Enter");
+  await page.keyboard.type(" * texelF");
+  assert.deepEqual(await offered(), ["texelFetch"]);
+  await page.keyboard.press("Tab");
+  assert.ok((await area.inputValue()).endsWith("param.amount * texelFetch"));
+  await page.getByRole("button", { name: "Revert" }).click();
 });
