@@ -29,17 +29,37 @@ constexpr std::array<std::string_view, 5> kStepKeys = {"name", "mix", "preset", 
 }
 
 /// One line, with a space behind each comma and colon, as people write looks.
-std::string text_of(const Json& value) {
+std::string line_of(const Json& value) {
     if (value.is_array()) {
         std::string text;
-        for (const Json& item : value) text += (text.empty() ? "" : ", ") + text_of(item);
+        for (const Json& item : value) text += (text.empty() ? "" : ", ") + line_of(item);
         return "[" + text + "]";
     }
     if (!value.is_object()) return value.dump();
     std::string text;
     for (const auto& [key, item] : value.items())
-        text += (text.empty() ? "" : ", ") + Json(key).dump() + ": " + text_of(item);
+        text += (text.empty() ? "" : ", ") + Json(key).dump() + ": " + line_of(item);
     return text.empty() ? "{}" : "{ " + text + " }";
+}
+
+/// What the lines of a text around a new value are like.
+struct Lines {
+    std::string indent;
+    std::string end;
+};
+
+/// Objects, and lists of them, that are too long for a line have one for each part.
+std::string text_of(const Json& value, const Lines& lines) {
+    constexpr std::size_t kMostColumns = 110;
+    std::string line = line_of(value);
+    const bool is_list = value.is_array() && !value.empty() && value.front().is_object();
+    if (line.size() <= kMostColumns || (!value.is_object() && !is_list)) return line;
+    const Lines inner{lines.indent + "  ", lines.end};
+    std::string text;
+    for (const auto& [key, item] : value.items())
+        text += (text.empty() ? "" : ",") + inner.end + inner.indent +
+                (is_list ? "" : Json(key).dump() + ": ") + text_of(item, inner);
+    return (is_list ? "[" : "{") + text + lines.end + lines.indent + (is_list ? "]" : "}");
 }
 
 /// The white space at the beginning of the line that `at` is in; and whether nothing else stands before it.
@@ -57,6 +77,11 @@ LineStart line_start(std::string_view text, std::size_t at) {
 /// How a text ends its lines.
 std::string line_end(std::string_view text) {
     return text.find("\r\n") == std::string_view::npos ? "\n" : "\r\n";
+}
+
+/// Those of the line that `at` is in.
+Lines lines_at(std::string_view text, std::size_t at) {
+    return {line_start(text, at).indent, line_end(text)};
 }
 
 /// Behind a comment that follows `at` on its line, where nothing but blanks stands between; else `at`.
@@ -161,7 +186,8 @@ std::string with_members(std::string text, const Json& value) {
         const SpanMember* follower = next == value.end() ? nullptr : object.find(next.key());
         const std::size_t at =
             follower ? std::size_t(follower - object.members.data()) : object.members.size();
-        insert_part(text, list_of(object), at, Json(item.key()).dump() + ": " + text_of(*item));
+        const Lines lines = lines_at(text, object.members.front().key_span.begin);
+        insert_part(text, list_of(object), at, Json(item.key()).dump() + ": " + text_of(*item, lines));
     }
     for (const std::string& key : gone) set_member(text, spans_of(text), key, nullptr);
     return text;
@@ -184,10 +210,14 @@ void set_member(std::string& text, const SpanNode& object, const std::string& ke
         const bool is_inside =
             has_lines && value.is_object() && !value.empty() && before.is_object() && !before.empty();
         text.replace(span.begin, span.end - span.begin,
-                     is_inside ? with_members(std::string(span.of(text)), value) : text_of(value));
+                     is_inside ? with_members(std::string(span.of(text)), value)
+                               : text_of(value, lines_at(text, member->key_span.begin)));
         return;
     }
-    insert_part(text, list_of(object), object.members.size(), Json(key).dump() + ": " + text_of(value));
+    const Lines lines =
+        lines_at(text, object.members.empty() ? object.span.begin : object.members.back().key_span.begin);
+    insert_part(text, list_of(object), object.members.size(),
+                Json(key).dump() + ": " + text_of(value, lines));
 }
 
 const SpanNode& steps_of(const SpanNode& root) {
@@ -247,7 +277,7 @@ void set_variable(std::string& text, const SpanNode& root, const Json& edit) {
     }
     if (value.is_null()) return;
     const auto steps = std::size_t(root.find("steps") - root.members.data());
-    insert_part(text, list_of(root), steps, "\"vars\": " + text_of(Json{{name, value}}));
+    insert_part(text, list_of(root), steps, "\"vars\": " + line_of(Json{{name, value}}));
 }
 
 /// Steps change places; what stands between them stays where it is.
@@ -285,10 +315,10 @@ void add_step(std::string& text, const SpanNode& steps, const Json& edit) {
     if (const std::string_view list = whole.of(text); list == "[]" && text.find('\n') < whole.begin) {
         const std::string end = line_end(text), indent = line_start(text, whole.begin).indent;
         text.replace(whole.begin, list.size(),
-                     "[" + end + indent + "  " + text_of(step) + end + indent + "]");
+                     "[" + end + indent + "  " + line_of(step) + end + indent + "]");
         return;
     }
-    insert_part(text, list_of(steps), at, text_of(step));
+    insert_part(text, list_of(steps), at, line_of(step));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <mutex>
 #include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -85,6 +86,21 @@ TEST(LookEdits, ChangeAnObjectOfSeveralLinesMemberByMember) {
     const std::string moved = with(R"({"keys": {"30": "5.0 m"}})");
     EXPECT_EQ(read(moved)["steps"][0]["params"]["focus_distance"],
               Json::parse(R"({"keys": {"30": "5.0 m"}})"));
+}
+
+TEST(LookEdits, GiveAValueThatIsTooLongForALineALineForEachPart) {
+    const std::string text = "{ \"aftershade\": 1,\n  \"steps\": [\n    { \"effect\": \"dof\" }\n  ]\n}\n";
+    const Json keys = Json::parse(R"({ "keys": {
+        "1": { "value": { "from": "depth", "object": "Suzanne" }, "interpolation": [0.4, 0, 0.6, 1] },
+        "24": { "from": "depth", "object": "Ball" } }, "interpolation": "smooth" })");
+    const std::string set =
+        edited(text, {{"op", "set"}, {"step", 0}, {"param", "focus_distance"}, {"value", keys}});
+    EXPECT_EQ(read(set)["steps"][0]["params"]["focus_distance"], keys);
+    EXPECT_NE(set.find("\n          \"24\": { \"from\": \"depth\", \"object\": \"Ball\" }\n"),
+              std::string::npos)
+        << set;
+    std::istringstream lines(set);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120) << line;
 }
 
 TEST(LookEdits, PutANewKeyAfterTheLastOneInItsOwnForm) {
