@@ -92,7 +92,10 @@ const faults = new Faults(store, (line, column) => {
 });
 
 const shaders = new ShaderView(store);
-viewer.addEventListener("fail", ({ detail }) => shaders.setFault(detail.message));
+viewer.addEventListener("fail", ({ detail }) => {
+  shaders.setFault(detail.message);
+  list.showFault();
+});
 
 const panels = { steps: list.node, text: text.node, shaders: shaders.node },
   panelNames = { steps: "Steps", text: "Text", shaders: "Shaders" };
@@ -133,10 +136,12 @@ at("look").append(tablist, faults.node, list.node, text.node, shaders.node, help
 showPanel("steps");
 // What the row with the focus is for; where none has it, the row under the pointer.
 const rowOf = (node) => (at("look").contains(node) ? node.closest(".row") : null);
+let explained = null;
+const explain = () => (help.textContent = explained?.querySelector(".hint")?.textContent ?? EXPLAIN);
 for (const name of ["focusin", "focusout", "pointerover", "pointerleave"])
   at("look").addEventListener(name, ({ type, target }) => {
-    const row = (type === "focusin" && rowOf(target)) || rowOf(document.activeElement) || rowOf(target);
-    help.textContent = row?.querySelector(".hint")?.textContent ?? EXPLAIN;
+    explained = (type === "focusin" && rowOf(target)) || rowOf(document.activeElement) || rowOf(target);
+    explain();
   });
 addDivider(at("work"), at("look"));
 
@@ -278,6 +283,7 @@ store.addEventListener("change", () => {
   faults.update();
   viewer.update(); // first: it has the frame that the steps show
   list.update();
+  explain();
   if (!text.node.hidden) text.update();
   if (!shaders.node.hidden) shaders.update();
 });
@@ -287,11 +293,11 @@ viewer.addEventListener("picture", ({ detail }) => {
   const fault = detail.times?.fault;
   list.showFault(fault);
   clearTimeout(measuring);
-  if (fault) return viewer.setMeasured(detail.times);
-  costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   shaders.setFault("");
   viewer.setMeasured(detail.times);
   list.showFrame();
+  if (fault) return;
+  costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   if (detail.isCoarse) return;
   list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;

@@ -1,12 +1,41 @@
 // An artist's ways through the page: from a frame alone to a saved look, without a line of JSON.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, symlinkSync, writeFileSync } from "node:fs";
+import {
+  copyFileSync,
+  existsSync,
+  mkdirSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  statSync,
+  symlinkSync,
+  writeFileSync,
+} from "node:fs";
 import { join } from "node:path";
 
 import { drawn } from "./served.mjs";
 import { program } from "./suite.mjs";
-import { allDrawn, axe, canProbeVideo, capture, clickAt, edit, environment, opened, pixelsOf, root, scene, shot, state, steps, until, walk, walkBlender, SUZANNE } from "./walks.mjs";
+import {
+  allDrawn,
+  axe,
+  canProbeVideo,
+  capture,
+  clickAt,
+  edit,
+  environment,
+  opened,
+  pixelsOf,
+  root,
+  scene,
+  shot,
+  state,
+  steps,
+  until,
+  walk,
+  walkBlender,
+  SUZANNE,
+} from "./walks.mjs";
 
 for (const [colorScheme, width, height] of [
   ["dark", 1440, 900],
@@ -377,7 +406,10 @@ for (const [colorScheme, width, height] of [
         assert.equal(probed.stdout.trim(), "h264,480,270,2");
       }
       assert.deepEqual(readdirSync(join(folder, "film")), ["film_0003.png", "film_0004.png"]);
-      assert.deepEqual(readdirSync(folder).filter((file) => file.startsWith(".")), []);
+      assert.deepEqual(
+        readdirSync(folder).filter((file) => file.startsWith(".")),
+        [],
+      );
       await name.press("Enter");
       await dialog.getByText("is there already; choose another name").waitFor();
       await name.fill("other");
@@ -391,7 +423,11 @@ for (const [colorScheme, width, height] of [
 
 // ---- hands ----
 
-const typedIn = (row, text) => row.getByRole("textbox").fill(text).then(() => row.getByRole("textbox").press("Enter"));
+const typedIn = (row, text) =>
+  row
+    .getByRole("textbox")
+    .fill(text)
+    .then(() => row.getByRole("textbox").press("Enter"));
 
 walk("adds up what is typed, and changes a number by a drag on it", async (page) => {
   await edit(page, { op: "add", at: 0, effect: "dof" });
@@ -418,7 +454,8 @@ walk("adds up what is typed, and changes a number by a drag on it", async (page)
   await page.mouse.up();
   // A tenth of the slider, whose ends are a factor of 500 apart.
   await page.waitForFunction(
-    (wanted) => Math.abs(parseFloat(window.aftershade.store.state.steps[0].params.focus_distance.value) / wanted - 1) < 0.05,
+    (wanted) =>
+      Math.abs(parseFloat(window.aftershade.store.state.steps[0].params.focus_distance.value) / wanted - 1) < 0.05,
     6 * 500 ** 0.1,
   );
   await page.keyboard.press("Control+z");
@@ -456,7 +493,11 @@ walk("explains the value with the focus, not the one under the pointer", async (
   assert.match(await help.innerText(), /^Focal length divided by/);
   await card.locator('[data-param="focus_distance"]').getByRole("textbox").focus();
   await card.locator('[data-param="f_number"]').hover();
-  assert.match(await help.innerText(), /^Distance along the view axis/);
+  assert.match(await help.innerText(), /^Distance along the view axis.*Now the effect's default/s);
+  await card.locator('[data-param="focus_distance"]').getByRole("textbox").fill("5");
+  await page.keyboard.press("Enter");
+  await until(page, "focus_distance", 5);
+  assert.match(await help.innerText(), /^Distance along the view axis.*Now set in the look/s);
 });
 
 walk("asks before a look with faults is saved", async (page, folder) => {
@@ -509,9 +550,7 @@ for (const [colorScheme, width, height] of [
       await edit(page, { op: "add", at: 0, effect: "dof" });
       const card = await opened(page, "dof"),
         names = (place) => card.locator(place).evaluateAll((rows) => rows.map(({ dataset }) => dataset.param));
-      const { params } = JSON.parse(
-        spawnSync(program, ["describe", "dof", "--json"], { encoding: "utf8" }).stdout,
-      );
+      const { params } = JSON.parse(spawnSync(program, ["describe", "dof", "--json"], { encoding: "utf8" }).stdout);
       const wanted = (fits) => Object.keys(params).filter((name) => fits(params[name]));
       await page.getByRole("group", { name: "Aperture" }).waitFor();
       assert.deepEqual(
@@ -544,10 +583,12 @@ for (const [colorScheme, width, height] of [
 // ---- the list ----
 
 walk("folds open steps while one of them is dragged", async (page) => {
-  for (const [at, effect] of ["dof", "vignette", "view_transform"].entries()) await edit(page, { op: "add", at, effect });
+  for (const [at, effect] of ["dof", "vignette", "view_transform"].entries())
+    await edit(page, { op: "add", at, effect });
   for (const name of ["dof", "vignette"]) await opened(page, name);
   const grip = await page.locator('.step[data-step="dof"] .grip').boundingBox(),
-    shown = () => page.locator(".step .body").evaluateAll((nodes) => nodes.filter((node) => node.checkVisibility()).length);
+    shown = () =>
+      page.locator(".step .body").evaluateAll((nodes) => nodes.filter((node) => node.checkVisibility()).length);
   assert.equal(await shown(), 2);
   await page.mouse.move(grip.x + 8, grip.y + 8);
   await page.mouse.down();

@@ -6,7 +6,18 @@ import { join } from "node:path";
 
 import { TINT, tintShader } from "./tint.mjs";
 import { program } from "./suite.mjs";
-import { axe, canProbeVideo, clickAt, environment, pixelsOf, shot, state, steps, SUZANNE, walkBlender } from "./walks.mjs";
+import {
+  axe,
+  canProbeVideo,
+  clickAt,
+  environment,
+  pixelsOf,
+  shot,
+  state,
+  steps,
+  SUZANNE,
+  walkBlender,
+} from "./walks.mjs";
 
 /** A hand at the pointer. */
 const pointer = {
@@ -73,7 +84,10 @@ async function open(page, hand, name) {
 async function fromList(page, hand, node, words) {
   await hand.press(page, node);
   await page.keyboard.type(words);
-  await page.locator("#found-objects .name", { hasText: words.split(" ")[0] }).first().waitFor();
+  await page
+    .locator("#found-objects .name", { hasText: words.split(" ")[0] })
+    .first()
+    .waitFor();
   await page.keyboard.press("Enter");
 }
 /** With the keys that steps have for it. */
@@ -126,6 +140,9 @@ const walkAll = (hand, options) => async (page, folder) => {
   const skin = (await open(page, hand, "sss_gaussian")).getByRole("button", { name: "Choose objects of object ids" });
   await fromList(page, hand, skin, "skin material");
   await inStep(page, "sss_gaussian", '"value":["skin"]');
+  // As wide as a hand, so that light is seen to go some pixels far.
+  await hand.type(page, step(page, "sss_gaussian").locator('[data-param="world_unit"]').getByRole("textbox"), "20");
+  await inStep(page, "sss_gaussian", '"value":20');
   await note("skin");
   // A vignette beside Suzanne.
   const card = await open(page, hand, "vignette");
@@ -172,7 +189,7 @@ async function check(folder, { text }) {
   assert.ok(text.startsWith("// A fast lens, focused on what is in the middle"), "comments are kept");
   assert.ok(Math.max(...text.split("\n").map((line) => line.length)) < 120, text);
   assert.deepEqual(JSON.parse(text.replace(/^\/\/.*$/gm, "")).steps, [
-    { effect: "sss_gaussian", params: { object_ids: ["skin"] } },
+    { effect: "sss_gaussian", params: { object_ids: ["skin"], world_unit: 20 } },
     {
       effect: "dof",
       params: {

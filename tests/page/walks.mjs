@@ -40,7 +40,8 @@ export function walk(name, work, { words = [capture], mayFail = false, ...option
     }
   });
 }
-export const canProbeVideo = () => ["ffmpeg", "ffprobe"].every((program) => spawnSync(program, ["-version"]).status === 0);
+export const canProbeVideo = () =>
+  ["ffmpeg", "ffprobe"].every((program) => spawnSync(program, ["-version"]).status === 0);
 export const state = (page) => page.evaluate(() => window.aftershade.store.state);
 export const steps = async (page) => (await state(page)).steps.map(({ effect }) => effect);
 export const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`) });
