@@ -61,9 +61,16 @@ export class CodeArea {
     if (isChanged) {
       const after = nodes[old.length - tail] ?? null;
       for (let i = old.length - tail - same; i > 0; --i) nodes[same].remove();
-      const fresh = lines.slice(same, lines.length - tail).map((line) =>
-        element("div", { class: "line-of-code" }, element("span", { class: "number" }), document.createTextNode(line)),
-      );
+      const fresh = lines
+        .slice(same, lines.length - tail)
+        .map((line) =>
+          element(
+            "div",
+            { class: "line-of-code" },
+            element("span", { class: "number" }),
+            document.createTextNode(line),
+          ),
+        );
       for (const node of fresh) this.back.insertBefore(node, after);
       this.#lines = lines;
     }

@@ -4,7 +4,8 @@ import { element, freshId } from "./elements.js";
 const MOST = 60; // entries of the list
 
 /** How well an entry answers what is typed: 2 to 0, or -1. */
-const rank = (label, typed) => (label.startsWith(typed) ? 2 : label.includes(`_${typed}`) ? 1 : label.includes(typed) ? 0 : -1);
+const rank = (label, typed) =>
+  label.startsWith(typed) ? 2 : label.includes(`_${typed}`) ? 1 : label.includes(typed) ? 0 : -1;
 
 export class Completion {
   #found = [];

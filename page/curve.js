@@ -137,7 +137,11 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
   function move(index, frame, channel, number, name) {
     const { keys } = keyed,
       { frame: old, literal: whole, ease } = keys[index],
-      to = clamp(Math.round(frame), (keys[index - 1]?.frame ?? -Infinity) + 1, (keys[index + 1]?.frame ?? Infinity) - 1),
+      to = clamp(
+        Math.round(frame),
+        (keys[index - 1]?.frame ?? -Infinity) + 1,
+        (keys[index + 1]?.frame ?? Infinity) - 1,
+      ),
       typed = literal(nice(number), parameter, hasChannels ? whole[channel] : whole),
       next = { frame: to, literal: hasChannels ? whole.with(channel, typed) : typed, ease };
     if (to !== old || numbersOf(whole, parameter.unit)[channel] !== nice(number))

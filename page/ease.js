@@ -61,7 +61,11 @@ export class EaseChoices {
     const from = keyed.keys[this.index].frame;
     this.own.setAttribute("aria-label", `Interpolation of ${this.label} from frame ${from}`);
     this.own.title = `From the key at frame ${from} to the next`;
-    options(this.own, [["", `from ${from}: as all`], ...entries.map(([name, text]) => [name, `from ${from}: ${text}`])], word(own) ?? "");
+    options(
+      this.own,
+      [["", `from ${from}: as all`], ...entries.map(([name, text]) => [name, `from ${from}: ${text}`])],
+      word(own) ?? "",
+    );
   }
 }
 

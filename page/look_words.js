@@ -101,9 +101,11 @@ export function lookWords(text, at, schema, names = []) {
       })),
   );
   const values = all.flatMap((form) =>
-    [...(form.enum ?? []), ...("const" in form ? [form.const] : []), ...(form.type === "boolean" ? [true, false] : [])].map(
-      (value) => ({ label: String(value), insert: quoted(value), words: form.description }),
-    ),
+    [
+      ...(form.enum ?? []),
+      ...("const" in form ? [form.const] : []),
+      ...(form.type === "boolean" ? [true, false] : []),
+    ].map((value) => ({ label: String(value), insert: quoted(value), words: form.description })),
   );
   const objects = ["object", "name"].includes(place.path.filter((key) => typeof key === "string").at(-1)) ? names : [];
   return {

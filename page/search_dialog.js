@@ -62,7 +62,8 @@ export class SearchDialog {
     const node = items[this.at];
     if (node) this.search.setAttribute("aria-activedescendant", node.id);
     else this.search.removeAttribute("aria-activedescendant");
-    if (this.at === 0) this.list.scrollTop = 0; // with the heading above it
+    if (this.at === 0)
+      this.list.scrollTop = 0; // with the heading above it
     else node?.scrollIntoView({ block: "nearest" });
   }
 

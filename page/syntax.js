@@ -2,7 +2,8 @@
 
 const KINDS = ["comment", "string", "number", "word", "name"];
 
-const JSON_PARTS = /(?<comment>\/\/.*)|(?<name>"(?:[^"\\]|\\.)*"(?=\s*:))|(?<string>"(?:[^"\\]|\\.)*"?)|(?<number>-?\d[\w.+-]*)|(?<word>\b(?:true|false|null)\b)/dg;
+const JSON_PARTS =
+  /(?<comment>\/\/.*)|(?<name>"(?:[^"\\]|\\.)*"(?=\s*:))|(?<string>"(?:[^"\\]|\\.)*"?)|(?<number>-?\d[\w.+-]*)|(?<word>\b(?:true|false|null)\b)/dg;
 
 const GLSL_WORDS =
   "break|case|const|continue|default|discard|do|else|flat|for|if|in|inout|layout|out|precise|return|shared|struct|switch|uniform|while|true|false|" +

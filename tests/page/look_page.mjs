@@ -25,8 +25,10 @@ export const LOOK = `// Comments and spaces are the author's.
   ]
 }
 `;
-export const described = (id) => JSON.parse(spawnSync(program, ["describe", id, "--json"], { encoding: "utf8" }).stdout);
-export const withoutComments = (text) => JSON.parse(text.replace(/("(?:[^"\\]|\\.)*")|\/\/.*$/gm, (_, kept) => kept ?? ""));
+export const described = (id) =>
+  JSON.parse(spawnSync(program, ["describe", id, "--json"], { encoding: "utf8" }).stdout);
+export const withoutComments = (text) =>
+  JSON.parse(text.replace(/("(?:[^"\\]|\\.)*")|\/\/.*$/gm, (_, kept) => kept ?? ""));
 
 let browser,
   shared,

@@ -40,7 +40,8 @@ inPage("can be used by the keyboard alone, with the focus in sight", async (page
   ];
   for (const label of wanted) assert.ok(seen.has(label), `${label} in ${[...seen]}`);
   // A step is added, moved, opened, changed and saved; a letter in a field is text.
-  while (await page.evaluate(() => document.activeElement.matches("input[type=text], select"))) await page.keyboard.press("Tab");
+  while (await page.evaluate(() => document.activeElement.matches("input[type=text], select")))
+    await page.keyboard.press("Tab");
   await page.keyboard.press("s");
   await page.keyboard.press("a");
   await page.keyboard.type("sharpen");

@@ -2,7 +2,17 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 
-import { compareWithPng, described, frame, inPage, LOOK, runPicture, state, textOf, withoutComments } from "./look_page.mjs";
+import {
+  compareWithPng,
+  described,
+  frame,
+  inPage,
+  LOOK,
+  runPicture,
+  state,
+  textOf,
+  withoutComments,
+} from "./look_page.mjs";
 import { random, randomEdit } from "./random_edits.mjs";
 import { drawn } from "./served.mjs";
 

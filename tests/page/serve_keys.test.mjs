@@ -4,7 +4,22 @@ import { spawnSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 
-import { capture, changed, compareWithPng, environment, folder, frame, inPage, LOOK, lookAfter, lookOf, opened, row, runPicture, textOf } from "./look_page.mjs";
+import {
+  capture,
+  changed,
+  compareWithPng,
+  environment,
+  folder,
+  frame,
+  inPage,
+  LOOK,
+  lookAfter,
+  lookOf,
+  opened,
+  row,
+  runPicture,
+  textOf,
+} from "./look_page.mjs";
 import { drawn } from "./served.mjs";
 import { program } from "./suite.mjs";
 
@@ -144,63 +159,68 @@ inPage("drags a key by the pointer in one step of undo, also a channel of a colo
   await page.waitForFunction((text) => window.aftershade.store.state.text === text, before);
 });
 
-inPage("gives a stretch a curve of its own, whose handles keys and pointer move, and takes what `run` takes", async (page) => {
-  const controls = row(await opened(page, "color_grade"), "exposure"),
-    exposure = async () => (await lookOf(page)).steps[1].params.exposure,
-    set = (value) =>
-      lookAfter(page, () =>
-        page.evaluate(
-          (wanted) => window.aftershade.store.edit([{ op: "set", step: 1, param: "exposure", value: wanted }]),
-          value,
-        ),
-      );
-  await set({ keys: { 0: 0, 4: 1, 9: 0.5 }, interpolation: "step" });
-  const own = controls.getByLabel("Interpolation of exposure from frame 0");
-  await lookAfter(page, () => own.selectOption("curve"));
-  assert.deepEqual(await exposure(), {
-    keys: { 0: { value: 0, interpolation: [0.4, 0, 0.6, 1] }, 4: 1, 9: 0.5 },
-    interpolation: "step",
-  });
-  const handles = controls.locator(".handle");
-  assert.equal(await handles.count(), 2);
-  await handles.first().focus();
-  await lookAfter(page, () => page.keyboard.press("Shift+ArrowUp"));
-  await lookAfter(page, () => page.keyboard.press("ArrowLeft"));
-  assert.deepEqual((await exposure()).keys[0].interpolation, [0.35, 0.2, 0.6, 1]);
-  assert.equal(await handles.first().getAttribute("aria-valuetext"), "20 % of the change after 35 % of the frames");
-  // The field has the number of the program's own curve.
-  const shown = Number(await controls.getByRole("textbox").inputValue()),
-    file = join(folder, "curve.json");
-  writeFileSync(file, await textOf(page));
-  const { stdout } = spawnSync(
-    program,
-    ["run", file, capture, "-o", join(folder, "explained.png"), "--frames", "1", "--explain"],
-    { encoding: "utf8", env: environment },
-  );
-  const [, taken] = /^.*\bexposure\b\D*([-.\de]+)/m.exec(stdout.slice(stdout.indexOf("color_grade")));
-  assert.ok(Math.abs(shown - Number(taken)) < 1e-5, `${shown} on the page, ${taken} in run`);
-  assert.ok(Math.abs(shown - 0.25) > 0.005, `${shown} is that of a straight line`);
-  // A drag is one step of undo, and ends at the border.
-  const before = await textOf(page),
-    box = await handles.nth(1).boundingBox();
-  await page.mouse.move(box.x + 10, box.y + 10);
-  await page.mouse.down();
-  await page.mouse.move(box.x + 10, box.y + 60, { steps: 5 });
-  await page.mouse.move(box.x + 10, box.y + 400, { steps: 5 });
-  await page.mouse.up();
-  await changed(page, before);
-  await page.waitForFunction(
-    () => window.aftershade.store.state.steps[1].params.exposure.value.keys[0].interpolation[3] === 0,
-  );
-  await page.keyboard.press("Control+z");
-  await page.waitForFunction((text) => window.aftershade.store.state.text === text, before);
-  // A key that moves keeps its curve, and a word takes it out.
-  await knots(await opened(page, "color_grade"), "exposure").first().focus();
-  await lookAfter(page, () => page.keyboard.press("ArrowRight"));
-  assert.deepEqual((await exposure()).keys[1], { value: 0, interpolation: [0.35, 0.2, 0.6, 1] });
-  await lookAfter(page, () => controls.getByLabel("Interpolation of exposure from frame 1").selectOption(""));
-  assert.deepEqual(await exposure(), { keys: { 1: 0, 4: 1, 9: 0.5 }, interpolation: "step" });
-});
+inPage(
+  "gives a stretch a curve of its own, whose handles keys and pointer move, and takes what `run` takes",
+  async (page) => {
+    const controls = row(await opened(page, "color_grade"), "exposure"),
+      exposure = async () => (await lookOf(page)).steps[1].params.exposure,
+      set = (value) =>
+        lookAfter(page, () =>
+          page.evaluate(
+            (wanted) => window.aftershade.store.edit([{ op: "set", step: 1, param: "exposure", value: wanted }]),
+            value,
+          ),
+        );
+    await set({ keys: { 0: 0, 4: 1, 9: 0.5 }, interpolation: "step" });
+    const own = controls.getByLabel("Interpolation of exposure from frame 0");
+    await lookAfter(page, () => own.selectOption("curve"));
+    assert.deepEqual(await exposure(), {
+      keys: { 0: { value: 0, interpolation: [0.4, 0, 0.6, 1] }, 4: 1, 9: 0.5 },
+      interpolation: "step",
+    });
+    const handles = controls.locator(".handle");
+    assert.equal(await handles.count(), 2);
+    await handles.first().focus();
+    await lookAfter(page, () => page.keyboard.press("Shift+ArrowUp"));
+    await lookAfter(page, () => page.keyboard.press("ArrowLeft"));
+    assert.deepEqual((await exposure()).keys[0].interpolation, [0.35, 0.2, 0.6, 1]);
+    assert.equal(await handles.first().getAttribute("aria-valuetext"), "20 % of the change after 35 % of the frames");
+    // The field has the number of the program's own curve.
+    const shown = Number(await controls.getByRole("textbox").inputValue()),
+      file = join(folder, "curve.json");
+    writeFileSync(file, await textOf(page));
+    const { stdout } = spawnSync(
+      program,
+      ["run", file, capture, "-o", join(folder, "explained.png"), "--frames", "1", "--explain"],
+      { encoding: "utf8", env: environment },
+    );
+    const [, taken] = /^.*\bexposure\b\D*([-.\de]+)/m.exec(stdout.slice(stdout.indexOf("color_grade")));
+    assert.ok(Math.abs(shown - Number(taken)) < 1e-5, `${shown} on the page, ${taken} in run`);
+    assert.ok(Math.abs(shown - 0.25) > 0.005, `${shown} is that of a straight line`);
+    // A drag is one step of undo, and ends at the border.
+    const before = await textOf(page),
+      box = await handles.nth(1).boundingBox();
+    await page.mouse.move(box.x + 10, box.y + 10);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 10, box.y + 60, { steps: 5 });
+    await page.mouse.move(box.x + 10, box.y + 400, { steps: 5 });
+    await page.mouse.up();
+    await changed(page, before);
+    await page.waitForFunction(
+      () => window.aftershade.store.state.steps[1].params.exposure.value.keys[0].interpolation[3] === 0,
+    );
+    await page.keyboard.press("Control+z");
+    await page.waitForFunction((text) => window.aftershade.store.state.text === text, before);
+    // A key that moves keeps its curve, and a word takes it out.
+    await knots(await opened(page, "color_grade"), "exposure")
+      .first()
+      .focus();
+    await lookAfter(page, () => page.keyboard.press("ArrowRight"));
+    assert.deepEqual((await exposure()).keys[1], { value: 0, interpolation: [0.35, 0.2, 0.6, 1] });
+    await lookAfter(page, () => controls.getByLabel("Interpolation of exposure from frame 1").selectOption(""));
+    assert.deepEqual(await exposure(), { keys: { 1: 0, 4: 1, 9: 0.5 }, interpolation: "step" });
+  },
+);
 
 inPage("keeps comments between keys while a key changes", async (page) => {
   const text = LOOK.replace(

@@ -257,7 +257,9 @@ inPage("adds a step that is found by a word of its summary", async (page) => {
   const before = await textOf(page);
   await page.keyboard.press("a");
   await page.keyboard.type("grain");
-  const found = await page.locator("#found [role=option]").evaluateAll((nodes) => nodes.map((node) => node.dataset.effect));
+  const found = await page
+    .locator("#found [role=option]")
+    .evaluateAll((nodes) => nodes.map((node) => node.dataset.effect));
   assert.equal(found[0], "film_grain");
   await page.getByLabel("Search effects by name and summary").fill("fireflies zzz");
   assert.equal(await page.getByText("No effect matches.").isVisible(), true);
@@ -323,13 +325,16 @@ inPage("draws a line where a dragged step lands", async (page) => {
         const { content, backgroundColor, height } = getComputedStyle(node, part);
         return content === "none" ? null : [backgroundColor, height];
       }, pseudo),
-    accent = await page.locator(".step").first().evaluate((node) => {
-      const probe = node.appendChild(document.createElement("i"));
-      probe.style.color = "var(--accent)";
-      const { color: found } = getComputedStyle(probe);
-      probe.remove();
-      return found;
-    });
+    accent = await page
+      .locator(".step")
+      .first()
+      .evaluate((node) => {
+        const probe = node.appendChild(document.createElement("i"));
+        probe.style.color = "var(--accent)";
+        const { color: found } = getComputedStyle(probe);
+        probe.remove();
+        return found;
+      });
   await page.mouse.move(grip.x + 8, grip.y + 8);
   await page.mouse.down();
   const { y } = await step(page, "vignette").boundingBox();

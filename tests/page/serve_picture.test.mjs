@@ -5,7 +5,26 @@ import { copyFileSync, mkdtempSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { capture, changed, compareWithPng, environment, folder, frame, inPage, LOOK, middle, open, opened, root, row, runPicture, serveOver, state, step, textOf } from "./look_page.mjs";
+import {
+  capture,
+  changed,
+  compareWithPng,
+  environment,
+  folder,
+  frame,
+  inPage,
+  LOOK,
+  middle,
+  open,
+  opened,
+  root,
+  row,
+  runPicture,
+  serveOver,
+  state,
+  step,
+  textOf,
+} from "./look_page.mjs";
 import { drawn } from "./served.mjs";
 import { program } from "./suite.mjs";
 
@@ -227,9 +246,7 @@ test("shows the truth beside the frame, and how far the steps' colour is from it
     await drawn(page);
     const figures = page.getByRole("group", { name: "Distance from the truth" });
     await figures.getByText("lens: equal, FLIP 0").waitFor();
-    await page.evaluate(() =>
-      window.aftershade.store.edit([{ op: "set", step: 0, param: "exposure", value: 0.5 }]),
-    );
+    await page.evaluate(() => window.aftershade.store.edit([{ op: "set", step: 0, param: "exposure", value: 0.5 }]));
     await figures.getByText(/^lens: \d+(\.\d+)? dB, FLIP 0\.\d+$/).waitFor();
     const bytes = async () => {
       await drawn(page);

@@ -59,7 +59,10 @@ withTint(
   async (page, { shader, look }) => {
     const before = await textOf(page),
       lines = Array.from({ length: 12_000 }, (_, i) => `light = light * 1.01 + sin(light * ${i}.0);`);
-    writeFileSync(shader, tintShader("light * param.amount").replace("    out_color", `${lines.join("\n")}\nout_color`));
+    writeFileSync(
+      shader,
+      tintShader("light * param.amount").replace("    out_color", `${lines.join("\n")}\nout_color`),
+    );
     const isFaulty = (words) => window.aftershade.store.state.faults.some(({ message }) => message.includes(words));
     await page.waitForFunction(isFaulty, "did not finish within 4 s");
     assert.equal(await textOf(page), before);
@@ -77,69 +80,77 @@ withTint(
   { words: ["--pass-timeout", "4"] },
 );
 
-withTint("names a pass that crashes the driver, and keeps the last good picture until it is mended", async (page, { shader }) => {
-  const shown = () => page.locator(".stage canvas").evaluate((canvas) => canvas.toDataURL());
-  await drawn(page);
-  const before = await textOf(page),
-    good = await shown(),
-    deep = tintShader("F(F(F(F(F(F(F(F(F(light)))))))))").replace("void main", "#define F(x) x*x+x*x\nvoid main");
-  writeFileSync(shader, deep);
-  await page.waitForFunction(() =>
-    window.aftershade.store.state.faults.some(({ message }) => /crashed .*compiling pass 'tint' of step 'tint'/.test(message)),
-  );
-  await page.evaluate(() => window.aftershade.settled());
-  assert.equal(await page.locator(".badge").innerText(), "last good picture: the look has faults");
-  assert.equal(await shown(), good);
-  assert.equal(await textOf(page), before);
-  assert.equal((await state(page)).can_undo, true);
-  await page.reload();
-  await drawn(page);
-  await frame(page);
-  assert.equal(await shown(), good, "for a page that is opened now, too");
-  writeFileSync(shader, tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
-  await page.waitForFunction(() => !window.aftershade.store.state.faults.length);
-  const isGreen = ([red, green]) => green > red,
-    after = await centreOnce(page, isGreen);
-  assert.ok(isGreen(after), `${after}`);
-  await page.keyboard.press("Control+z");
-  await page.waitForFunction((text) => window.aftershade.store.state.text !== text, before);
-  page.faults = page.faults.filter((words) => !words.includes("409")); // Chromium lists the refused picture
-});
+withTint(
+  "names a pass that crashes the driver, and keeps the last good picture until it is mended",
+  async (page, { shader }) => {
+    const shown = () => page.locator(".stage canvas").evaluate((canvas) => canvas.toDataURL());
+    await drawn(page);
+    const before = await textOf(page),
+      good = await shown(),
+      deep = tintShader("F(F(F(F(F(F(F(F(F(light)))))))))").replace("void main", "#define F(x) x*x+x*x\nvoid main");
+    writeFileSync(shader, deep);
+    await page.waitForFunction(() =>
+      window.aftershade.store.state.faults.some(({ message }) =>
+        /crashed .*compiling pass 'tint' of step 'tint'/.test(message),
+      ),
+    );
+    await page.evaluate(() => window.aftershade.settled());
+    assert.equal(await page.locator(".badge").innerText(), "last good picture: the look has faults");
+    assert.equal(await shown(), good);
+    assert.equal(await textOf(page), before);
+    assert.equal((await state(page)).can_undo, true);
+    await page.reload();
+    await drawn(page);
+    await frame(page);
+    assert.equal(await shown(), good, "for a page that is opened now, too");
+    writeFileSync(shader, tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
+    await page.waitForFunction(() => !window.aftershade.store.state.faults.length);
+    const isGreen = ([red, green]) => green > red,
+      after = await centreOnce(page, isGreen);
+    assert.ok(isGreen(after), `${after}`);
+    await page.keyboard.press("Control+z");
+    await page.waitForFunction((text) => window.aftershade.store.state.text !== text, before);
+    page.faults = page.faults.filter((words) => !words.includes("409")); // Chromium lists the refused picture
+  },
+);
 
-withTint("writes a shader by Ctrl+S and shows the picture that `run` then draws", async (page, { shader, files, look }) => {
-  const area = await openShader(page),
-    before = await centre(page);
-  await area.fill(tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
-  assert.match(readFileSync(shader, "utf8"), /param\.amount/, "nothing is written before it is saved");
-  await area.press("Control+s");
-  await page.waitForFunction(() => document.getElementById("notice").textContent.includes("Saved tint.frag"));
-  assert.equal(readFileSync(shader, "utf8"), await area.inputValue());
-  const isGreener = (rgb) => rgb[0] < before[0] && rgb[1] > rgb[0],
-    after = await centreOnce(page, isGreener);
-  assert.ok(isGreener(after), `${before} ${after}`);
-  await page.getByRole("tab", { name: "Steps" }).click();
-  await page.locator("body").press("Control+s");
-  await page.waitForFunction(() => window.aftershade.store.isSaved);
-  const png = join(folder, "tinted.png");
-  spawnSync(program, ["run", look, capture, "--frames", "1", "--effect-path", join(files, ".."), "-o", png], {
-    env: environment,
-  });
-  const [shown, run] = await page.evaluate(
-    async (bytes) => {
-      const pixels = async (blob) => {
-        const bitmap = await createImageBitmap(blob),
-          canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
-        canvas.getContext("2d").drawImage(bitmap, 0, 0);
-        return [...canvas.getContext("2d").getImageData(0, 0, bitmap.width, bitmap.height).data].join();
-      };
-      const { pictureBlob } = await import("./api.js"),
-        own = await pictureBlob({ frame: 1, scale: 1, view: "final", exposure: 0 });
-      return [await pixels(own), await pixels(new Blob([new Uint8Array(bytes)]))];
-    },
-    [...readFileSync(png)],
-  );
-  assert.ok(shown === run, "the pixels differ");
-});
+withTint(
+  "writes a shader by Ctrl+S and shows the picture that `run` then draws",
+  async (page, { shader, files, look }) => {
+    const area = await openShader(page),
+      before = await centre(page);
+    await area.fill(tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
+    assert.match(readFileSync(shader, "utf8"), /param\.amount/, "nothing is written before it is saved");
+    await area.press("Control+s");
+    await page.waitForFunction(() => document.getElementById("notice").textContent.includes("Saved tint.frag"));
+    assert.equal(readFileSync(shader, "utf8"), await area.inputValue());
+    const isGreener = (rgb) => rgb[0] < before[0] && rgb[1] > rgb[0],
+      after = await centreOnce(page, isGreener);
+    assert.ok(isGreener(after), `${before} ${after}`);
+    await page.getByRole("tab", { name: "Steps" }).click();
+    await page.locator("body").press("Control+s");
+    await page.waitForFunction(() => window.aftershade.store.isSaved);
+    const png = join(folder, "tinted.png");
+    spawnSync(program, ["run", look, capture, "--frames", "1", "--effect-path", join(files, ".."), "-o", png], {
+      env: environment,
+    });
+    const [shown, run] = await page.evaluate(
+      async (bytes) => {
+        const pixels = async (blob) => {
+          const bitmap = await createImageBitmap(blob),
+            canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+          canvas.getContext("2d").drawImage(bitmap, 0, 0);
+          return [...canvas.getContext("2d").getImageData(0, 0, bitmap.width, bitmap.height).data].join();
+        };
+        const { pictureBlob } = await import("./api.js"),
+          own = await pictureBlob({ frame: 1, scale: 1, view: "final", exposure: 0 });
+        return [await pixels(own), await pixels(new Blob([new Uint8Array(bytes)]))];
+      },
+      [...readFileSync(png)],
+    );
+    assert.ok(shown === run, "the pixels differ");
+  },
+);
 
 withTint(
   "makes a new effect by the keyboard alone, adds it to the look and edits its shader",

@@ -1,7 +1,18 @@
 // Variables, masks, tables and profiles on the page.
 import assert from "node:assert/strict";
 
-import { compareWithPng, frame, inPage, LOOK, lookAfter, opened, row, runPicture, state, textOf } from "./look_page.mjs";
+import {
+  compareWithPng,
+  frame,
+  inPage,
+  LOOK,
+  lookAfter,
+  opened,
+  row,
+  runPicture,
+  state,
+  textOf,
+} from "./look_page.mjs";
 import { drawn } from "./served.mjs";
 
 inPage("edits variables in their place in the text, and unbinds a parameter from one", async (page) => {
@@ -39,39 +50,52 @@ inPage("edits variables in their place in the text, and unbinds a parameter from
   assert.equal(look.steps[2].mix, 0.5);
 });
 
-inPage("makes a variable of a parameter's value, gives it to another one and removes it, by the keyboard alone", async (page) => {
-  const before = await textOf(page),
-    section = page.getByRole("region", { name: "Variables" }),
-    add = section.getByRole("button", { name: "Add a variable" });
-  await add.focus();
-  await page.keyboard.press("Enter");
-  const parameter = section.getByLabel("Parameter that uses the variable");
-  assert.equal(await parameter.evaluate((node) => node === document.activeElement), true);
-  await parameter.selectOption("color_grade.exposure");
-  const name = section.getByLabel("Name of the variable");
-  assert.equal(await name.inputValue(), "exposure");
-  assert.equal(await section.getByLabel("Value of the variable").inputValue(), "0.3");
-  await name.fill("No name");
-  await name.press("Enter");
-  assert.match(await section.getByRole("alert").last().innerText(), /small letters/);
-  await name.fill("warm");
-  let look = await lookAfter(page, () => name.press("Enter"));
-  assert.deepEqual(look.vars, { warm: 0.3 });
-  assert.deepEqual(look.steps[1].params.exposure, { var: "warm" });
-  assert.equal(await textOf(page), before.replace('"exposure":  0.3', '"exposure":  {"var": "warm"}').replace('"steps"', '"vars": { "warm": 0.3 },\n  "steps"').replace('{"var": "warm"}', '{ "var": "warm" }'));
-  assert.equal(await add.evaluate((node) => node === document.activeElement), true);
-  look = await lookAfter(page, () => section.getByLabel("Parameter that takes warm").selectOption("vignette.strength"));
-  assert.deepEqual(look.steps[2].params.strength, { var: "warm" });
-  look = await lookAfter(page, () => section.getByRole("button", { name: /^Remove the variable warm/ }).press("Enter"));
-  assert.equal(look.vars, undefined);
-  assert.equal(look.steps[1].params.exposure, 0.3);
-  assert.equal(look.steps[2].params.strength, 0.3);
-  await page.keyboard.press("Enter");
-  await section.getByLabel("Name of the variable").fill("far");
-  await section.getByLabel("Value of the variable").fill("6 m");
-  look = await lookAfter(page, () => section.getByLabel("Value of the variable").press("Enter"));
-  assert.deepEqual(look.vars, { far: "6 m" });
-});
+inPage(
+  "makes a variable of a parameter's value, gives it to another one and removes it, by the keyboard alone",
+  async (page) => {
+    const before = await textOf(page),
+      section = page.getByRole("region", { name: "Variables" }),
+      add = section.getByRole("button", { name: "Add a variable" });
+    await add.focus();
+    await page.keyboard.press("Enter");
+    const parameter = section.getByLabel("Parameter that uses the variable");
+    assert.equal(await parameter.evaluate((node) => node === document.activeElement), true);
+    await parameter.selectOption("color_grade.exposure");
+    const name = section.getByLabel("Name of the variable");
+    assert.equal(await name.inputValue(), "exposure");
+    assert.equal(await section.getByLabel("Value of the variable").inputValue(), "0.3");
+    await name.fill("No name");
+    await name.press("Enter");
+    assert.match(await section.getByRole("alert").last().innerText(), /small letters/);
+    await name.fill("warm");
+    let look = await lookAfter(page, () => name.press("Enter"));
+    assert.deepEqual(look.vars, { warm: 0.3 });
+    assert.deepEqual(look.steps[1].params.exposure, { var: "warm" });
+    assert.equal(
+      await textOf(page),
+      before
+        .replace('"exposure":  0.3', '"exposure":  {"var": "warm"}')
+        .replace('"steps"', '"vars": { "warm": 0.3 },\n  "steps"')
+        .replace('{"var": "warm"}', '{ "var": "warm" }'),
+    );
+    assert.equal(await add.evaluate((node) => node === document.activeElement), true);
+    look = await lookAfter(page, () =>
+      section.getByLabel("Parameter that takes warm").selectOption("vignette.strength"),
+    );
+    assert.deepEqual(look.steps[2].params.strength, { var: "warm" });
+    look = await lookAfter(page, () =>
+      section.getByRole("button", { name: /^Remove the variable warm/ }).press("Enter"),
+    );
+    assert.equal(look.vars, undefined);
+    assert.equal(look.steps[1].params.exposure, 0.3);
+    assert.equal(look.steps[2].params.strength, 0.3);
+    await page.keyboard.press("Enter");
+    await section.getByLabel("Name of the variable").fill("far");
+    await section.getByLabel("Value of the variable").fill("6 m");
+    look = await lookAfter(page, () => section.getByLabel("Value of the variable").press("Enter"));
+    assert.deepEqual(look.vars, { far: "6 m" });
+  },
+);
 
 inPage("refuses a file outside of the folders, and says how it may be named", async (page) => {
   const before = await textOf(page),
