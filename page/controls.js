@@ -1,7 +1,7 @@
 // A row for each parameter, made from its declaration in the effect's manifest.
 import { curveControl } from "./curve.js";
 import { element, icon, freshId, iconButton, options } from "./elements.js";
-import { canBeKeyed, isKeyed, keysOf, numbersAt, numbersOf, withKeys } from "./keyed.js";
+import { canBeKeyed, isKeyed, Keyed, numbersOf } from "./keyed.js";
 import { field, numberControl } from "./number.js";
 import { tableControl } from "./objects_table.js";
 import { profileControl } from "./profile.js";
@@ -208,8 +208,7 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, obj
   /** A value that was picked: the value of this frame where there are keys. */
   function take(value) {
     if (!isKeyed(entry.value)) return commit(value);
-    const { frame } = time;
-    commit(withKeys(entry.value, [...keysOf(entry.value).filter(([at]) => at !== frame), [frame, value]]));
+    commit(new Keyed(entry.value).withLiteral(time.frame, value));
   }
   /** Adds a key at the scrubber's frame, or takes that frame's key out; the last one leaves its value. */
   function toggleKey() {
@@ -225,16 +224,17 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, obj
         isPixelSource(value) ? { keys: { [frame]: value }, interpolation: "smooth" } : { keys: { [frame]: now } },
       );
     }
-    const rest = keysOf(value).filter(([at]) => at !== frame);
-    if (rest.length < keysOf(value).length) return commit(rest.length ? withKeys(value, rest) : value.keys[frame]);
-    if (kindOf(entry) === "rack") return commit(withKeys(value, [...rest, [frame, nearestKey(rest, frame)]]));
-    const style = rest[0][1],
-      numbers = numbersAt(value, frame, parameter).map((number) => Number(number.toPrecision(6)));
-    const now = Array.isArray(style) ? numbers : values.literal(numbers[0], parameter, style);
-    commit(withKeys(value, [...rest, [frame, now]]));
+    const keyed = new Keyed(value),
+      { keys } = keyed,
+      index = keys.findIndex((key) => key.frame === frame);
+    if (index >= 0) return commit(keyed.without(index));
+    const distance = (key) => Math.abs(key.frame - frame);
+    if (kindOf(entry) === "rack")
+      return commit(keyed.withLiteral(frame, keys.reduce((a, b) => (distance(b) < distance(a) ? b : a)).literal));
+    const style = keys[0].literal,
+      numbers = keyed.numbersAt(frame, parameter).map((number) => Number(number.toPrecision(6)));
+    commit(keyed.withLiteral(frame, Array.isArray(style) ? numbers : values.literal(numbers[0], parameter, style)));
   }
-  const nearestKey = (keys, frame) =>
-    keys.reduce((best, one) => (Math.abs(one[0] - frame) < Math.abs(best[0] - frame) ? one : best))[1];
   function showFrame() {
     control?.showFrame?.();
     if (!key) return;
@@ -244,7 +244,7 @@ export function parameterRow({ id, parameter, commit, pick, time, variables, obj
     key.title = isKey ? `Remove the key at frame ${time.frame}` : `Key this value at frame ${time.frame}`;
   }
   const kindOf = ({ value }) => {
-    const keys = isKeyed(value) && canBeKeyed(parameter) ? keysOf(value).map(([, one]) => one) : [];
+    const keys = isKeyed(value) && canBeKeyed(parameter) ? new Keyed(value).keys.map(({ literal }) => literal) : [];
     if (keys.some(isPixelSource)) return "rack";
     if (keys.length && keys.every((one) => numbersOf(one).every(Number.isFinite))) return "keys";
     if (isPixelSource(value)) return "source";

@@ -1,11 +1,12 @@
 // A small curve editor: keys over frames as points that the pointer and the arrow keys move.
-import { element, options } from "./elements.js";
-import { INTERPOLATIONS, keysOf, numbersAt, numbersOf, withKeys } from "./keyed.js";
+import { EaseChoices, EaseHandles } from "./ease.js";
+import { element } from "./elements.js";
+import { Keyed, numbersOf } from "./keyed.js";
 import { field } from "./number.js";
 import { isVector, literal, scaleOf, short, typedNumber } from "./values.js";
 
 const SPACE = "http://www.w3.org/2000/svg",
-  SAMPLES = 16; // of a smooth stretch between two keys
+  SAMPLES = 24; // of a stretch between two keys that is not straight
 
 function drawing(name, attributes) {
   const node = document.createElementNS(SPACE, name);
@@ -25,7 +26,7 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
     lowest = parameter.min ?? -Infinity,
     highest = parameter.max ?? Infinity,
     scale = scaleOf(parameter);
-  let value = null,
+  let keyed = null,
     isDragged = false,
     gesture = 0,
     low = 0,
@@ -43,8 +44,9 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
 
   const lines = names.map((name) => drawing("path", { class: `line ${name}`, "vector-effect": "non-scaling-stroke" })),
     now = drawing("path", { class: "now", "vector-effect": "non-scaling-stroke" }),
+    arms = drawing("path", { class: "arms", "vector-effect": "non-scaling-stroke" }),
     picture = drawing("svg", { viewBox: "0 0 1 1", preserveAspectRatio: "none", "aria-hidden": "true" });
-  picture.append(now, ...lines);
+  picture.append(now, ...lines, arms);
   const ends = ["most", "least", "begin", "finish"].map((name) =>
       element("span", { class: `end ${name}`, "aria-hidden": "true" }),
     ),
@@ -55,26 +57,38 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
     picture,
     knots,
   );
-  const choice = element("select", { "aria-label": `Interpolation of ${label}`, title: "Between two keys" });
-  options(
-    choice,
-    INTERPOLATIONS.map((name) => [name, name]),
-    "linear",
-  );
-  choice.addEventListener("change", () => {
-    const { interpolation, ...rest } = value;
-    commit(choice.value === "linear" && !interpolation ? rest : { ...value, interpolation: choice.value });
+  const choices = new EaseChoices({ label, time, change: commit });
+  // A stretch's corners in the plot: its two keys, by the first channel.
+  const corners = () =>
+    [0, 1].map((i) => {
+      const { frame, literal } = keyed.keys[choices.index + i];
+      return place(frame, numbersOf(literal, parameter.unit)[0]);
+    });
+  const handles = new EaseHandles({
+    label,
+    plot,
+    place: (shares) => {
+      const [a, b] = corners();
+      return shares.map((one, axis) => a[axis] + one * (b[axis] - a[axis]));
+    },
+    // A stretch between equal values is flat: the height of its handles stays.
+    shares: (at) => {
+      const [a, b] = corners();
+      return at.map((one, axis) => (a[axis] === b[axis] ? NaN : (one - a[axis]) / (b[axis] - a[axis])));
+    },
+    change: (ease, gesture) => take(keyed.withEaseOf(choices.index, ease), gesture),
   });
+  plot.append(handles.node);
   const fields = names.map((name, channel) =>
     field({
       label: name ? `${label}, ${name}` : parameter.unit ? `${label}, ${parameter.unit}` : label,
       describedBy,
       inputmode: "decimal",
       parse: (text) => typedNumber(text, parameter, oldLiteral(time.frame, channel)),
-      commit: (typed) => commit(keyed(time.frame, channel, typed)),
+      commit: (typed) => commit(withChannel(time.frame, channel, typed)),
       onArrow: (sign, times) => {
         gesture = `keys ${label}`;
-        set(time.frame, channel, nudged(numbersAt(value, time.frame, parameter)[channel], sign * times), gesture);
+        set(time.frame, channel, nudged(keyed.numbersAt(time.frame, parameter)[channel], sign * times), gesture);
       },
     }),
   );
@@ -86,7 +100,7 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
     element(
       "div",
       { class: "curve-foot" },
-      choice,
+      choices.nodes,
       moment,
       fields.map((one) => one.node),
       element("span", { class: "unit" }, parameter.unit ?? ""),
@@ -97,25 +111,22 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
 
   /** The literal of a channel at a frame; of a frame without a key, that of the nearest key before or after. */
   function oldLiteral(frame, channel) {
-    const keys = keysOf(value),
-      [, found] = keys.find(([at]) => at >= frame) ?? keys.at(-1);
+    const { literal: found } = keyed.keys.find((key) => key.frame >= frame) ?? keyed.keys.at(-1);
     return Array.isArray(found) ? found[channel] : found;
   }
   /** The value with a key whose channel is `typed`; the other channels of a new key are those of the curve. */
-  function keyed(frame, channel, typed) {
-    const keys = keysOf(value).filter(([at]) => at !== frame),
-      held = value.keys[frame] ?? numbersAt(value, frame, parameter).map(nice);
-    const whole = hasChannels ? [...held].map((old, i) => (i === channel ? typed : old)) : typed;
-    return withKeys(value, [...keys, [frame, whole]]);
+  function withChannel(frame, channel, typed) {
+    const held = keyed.at(frame)?.literal ?? keyed.numbersAt(frame, parameter).map(nice);
+    return keyed.withLiteral(frame, hasChannels ? [...held].with(channel, typed) : typed);
   }
   function take(next, name) {
-    value = next;
+    keyed = new Keyed(next);
     draw();
     commit(next, name);
   }
   function set(frame, channel, number, name) {
     const next = literal(nice(number), parameter, oldLiteral(frame, channel));
-    take(keyed(frame, channel, next), name);
+    take(withChannel(frame, channel, next), name);
   }
   function nudged(number, by) {
     if (number < scale.low || number > scale.high) return number + (by * (scale.high - scale.low)) / 100;
@@ -124,18 +135,21 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
   }
   /** Keys do not pass each other: a key's point is the same point after each move. */
   function move(index, frame, channel, number, name) {
-    const keys = keysOf(value),
-      [old, whole] = keys[index],
-      to = clamp(Math.round(frame), (keys[index - 1]?.[0] ?? -Infinity) + 1, (keys[index + 1]?.[0] ?? Infinity) - 1),
-      typed = literal(nice(number), parameter, hasChannels ? whole[channel] : whole);
-    keys[index] = [to, hasChannels ? whole.map((one, i) => (i === channel ? typed : one)) : typed];
-    if (to !== old || numbersOf(whole, parameter.unit)[channel] !== nice(number)) take(withKeys(value, keys), name);
+    const { keys } = keyed,
+      { frame: old, literal: whole, ease } = keys[index],
+      to = clamp(
+        Math.round(frame),
+        (keys[index - 1]?.frame ?? -Infinity) + 1,
+        (keys[index + 1]?.frame ?? Infinity) - 1,
+      ),
+      typed = literal(nice(number), parameter, hasChannels ? whole[channel] : whole),
+      next = { frame: to, literal: hasChannels ? whole.with(channel, typed) : typed, ease };
+    if (to !== old || numbersOf(whole, parameter.unit)[channel] !== nice(number))
+      take(keyed.withKeys(keys.with(index, next)), name);
   }
   function remove(index) {
-    const keys = keysOf(value);
-    if (keys.length === 1) return commit(keys[0][1]);
-    const isLast = index === keys.length - 1;
-    commit(withKeys(value, keys.toSpliced(index, 1))).then?.((isTaken) => {
+    const isLast = index === keyed.keys.length - 1;
+    commit(keyed.without(index)).then?.((isTaken) => {
       if (isTaken && isLast) knots.lastChild?.focus();
     });
   }
@@ -143,7 +157,7 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
   // ---- points ----
 
   const whereIs = (index, channel) => {
-    const [frame, one] = keysOf(value)[index];
+    const { frame, literal: one } = keyed.keys[index];
     return [frame, numbersOf(one, parameter.unit)[channel]];
   };
   let held = null;
@@ -214,34 +228,35 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
   plot.addEventListener("dblclick", (event) => {
     const box = plot.getBoundingClientRect(),
       frame = Math.round(first + ((event.clientX - box.left) / box.width) * (last - first));
-    if (String(frame) in value.keys) return;
-    set(frame, 0, numbersAt(value, frame, parameter)[0], null);
+    if (keyed.at(frame)) return;
+    set(frame, 0, keyed.numbersAt(frame, parameter)[0], null);
   });
 
   // ---- drawing ----
 
   function fitAxes(keys) {
-    const numbers = keys.flatMap(([, one]) => numbersOf(one, parameter.unit)).filter(Number.isFinite),
+    const numbers = keys.flatMap((key) => numbersOf(key.literal, parameter.unit)).filter(Number.isFinite),
       [least, most] = [Math.min(...numbers), Math.max(...numbers)],
       pad = most > least ? (most - least) / 3 : (scale.high - scale.low) / 8 || 1;
     [low, high] = [clamp(least - pad, lowest, least), clamp(most + pad, most, highest)];
     if (!(high > low)) [low, high] = [low - 1, high + 1];
-    const frames = [...time.frames, ...keys.map(([frame]) => frame)];
+    const frames = [...time.frames, ...keys.map(({ frame }) => frame)];
     [first, last] = [Math.min(...frames), Math.max(...frames)];
     if (first === last) [first, last] = [first - 1, last + 1];
   }
   function draw() {
-    const keys = keysOf(value);
+    const { keys } = keyed;
     if (!isDragged) fitAxes(keys);
     names.forEach((_, channel) => {
-      const points = [[first, numbersAt(value, first, parameter)[channel]]];
-      keys.forEach(([frame, one], i) => {
-        const before = keys[i - 1];
-        if (before && value.interpolation === "step") points.push([frame, points.at(-1)[1]]);
-        if (before && value.interpolation === "smooth")
+      const points = [[first, keyed.numbersAt(first, parameter)[channel]]];
+      keys.forEach(({ frame, literal: one }, i) => {
+        const before = keys[i - 1]?.frame,
+          ease = keyed.easeOf(i - 1);
+        if (i && ease === "step") points.push([frame, points.at(-1)[1]]);
+        else if (i && ease !== "linear")
           for (let s = 1; s < SAMPLES; ++s) {
-            const at = before[0] + ((frame - before[0]) * s) / SAMPLES;
-            points.push([at, numbersAt(value, at, { unit: parameter.unit })[channel]]);
+            const at = before + ((frame - before) * s) / SAMPLES;
+            points.push([at, keyed.numbersAt(at, { unit: parameter.unit })[channel]]);
           }
         points.push([frame, numbersOf(one, parameter.unit)[channel]]);
       });
@@ -256,7 +271,7 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
       knots.append(knot(Math.floor(i / names.length), i % names.length));
     }
     [...knots.children].forEach((point, i) => {
-      const [frame, one] = keys[Math.floor(i / names.length)],
+      const { frame, literal: one } = keys[Math.floor(i / names.length)],
         channel = i % names.length,
         number = numbersOf(one, parameter.unit)[channel],
         [x, y] = place(frame, number),
@@ -280,7 +295,10 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
       [x] = place(frame, low);
     now.setAttribute("d", `M${x},0L${x},1`);
     moment.textContent = `at ${frame}`;
-    numbersAt(value, frame, parameter).forEach((number, i) => fields[i]?.show(short(number, 6)));
+    choices.show(keyed);
+    handles.show(keyed.keys.length > 1 ? keyed.easeOf(choices.index) : null);
+    arms.setAttribute("d", handles.lines);
+    keyed.numbersAt(frame, parameter).forEach((number, i) => fields[i]?.show(short(number, 6)));
   }
 
   return {
@@ -289,8 +307,7 @@ export function curveControl({ label, parameter, describedBy, commit, time }) {
     showFrame,
     update(entry) {
       if (isDragged) return;
-      value = entry.value;
-      choice.value = value.interpolation ?? "linear";
+      keyed = new Keyed(entry.value);
       draw();
     },
   };

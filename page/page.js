@@ -85,14 +85,17 @@ dialog.node.addEventListener("added", async ({ detail }) => {
   list.focus(detail.at);
   notify(`${list.cards[detail.at]?.title.textContent} added as step ${detail.at + 1}`);
 });
-const text = new TextView(store);
+const text = new TextView(store, names);
 const faults = new Faults(store, (line, column) => {
   showPanel("text");
   text.goTo(line, column);
 });
 
 const shaders = new ShaderView(store);
-viewer.addEventListener("fail", ({ detail }) => shaders.setFault(detail.message));
+viewer.addEventListener("fail", ({ detail }) => {
+  shaders.setFault(detail.message);
+  list.showFault();
+});
 
 const panels = { steps: list.node, text: text.node, shaders: shaders.node },
   panelNames = { steps: "Steps", text: "Text", shaders: "Shaders" };
@@ -133,10 +136,12 @@ at("look").append(tablist, faults.node, list.node, text.node, shaders.node, help
 showPanel("steps");
 // What the row with the focus is for; where none has it, the row under the pointer.
 const rowOf = (node) => (at("look").contains(node) ? node.closest(".row") : null);
+let explained = null;
+const explain = () => (help.textContent = explained?.querySelector(".hint")?.textContent ?? EXPLAIN);
 for (const name of ["focusin", "focusout", "pointerover", "pointerleave"])
   at("look").addEventListener(name, ({ type, target }) => {
-    const row = (type === "focusin" && rowOf(target)) || rowOf(document.activeElement) || rowOf(target);
-    help.textContent = row?.querySelector(".hint")?.textContent ?? EXPLAIN;
+    explained = (type === "focusin" && rowOf(target)) || rowOf(document.activeElement) || rowOf(target);
+    explain();
   });
 addDivider(at("work"), at("look"));
 
@@ -212,6 +217,7 @@ const shortcuts = new Shortcuts([
   { group: "Look", keys: ["Ctrl+Z"], words: "Undo", run: () => store.undo(), inText: "edited" },
   { group: "Look", keys: ["Ctrl+Shift+Z", "Ctrl+Y"], words: "Redo", run: () => store.redo(), inText: "edited" },
   { group: "Look", keys: ["T"], words: "Steps, text or shaders", run: nextPanel },
+  { group: "Look", keys: ["Ctrl+Space"], words: "In a text: list what fits" },
   { group: "Look", keys: ["X"], words: "Export images, a video, a still, a contact sheet or the look", run: () => exporting.open() },
   { group: "Look", keys: ["Ctrl+Shift+C"], words: "Copy the command", run: copyCommand, inText: true },
   { group: "Steps", keys: ["A"], words: "Add a step", run: openAdd },
@@ -230,6 +236,7 @@ const shortcuts = new Shortcuts([
   { group: "Curves", keys: ["↑", "↓"], words: "Move the key by a hundredth of the slider's range; with Shift by a tenth" },
   { group: "Curves", keys: ["Enter"], words: "Go to the key's frame" },
   { group: "Curves", keys: ["Delete"], words: "Remove the key" },
+  { group: "Curves", keys: ["↑", "↓", "←", "→"], words: "Move the handle by 5 %; with Shift by 20 %" },
   { group: "Picture", keys: ["P"], words: "Go to the picture", run: () => viewer.canvas.focus() },
   { group: "Picture", keys: ["↑", "↓", "←", "→"], words: "Move the probe by 1 px; with Shift 10 px" },
   { group: "Picture", keys: ["Ctrl+arrows"], words: "Pan" },
@@ -276,21 +283,25 @@ store.addEventListener("change", () => {
   faults.update();
   viewer.update(); // first: it has the frame that the steps show
   list.update();
+  explain();
   if (!text.node.hidden) text.update();
   if (!shaders.node.hidden) shaders.update();
 });
 store.addEventListener("fail", ({ detail }) => notify(detail.message, true));
 let measuring;
 viewer.addEventListener("picture", ({ detail }) => {
-  costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
+  const fault = detail.times?.fault;
+  list.showFault(fault);
+  clearTimeout(measuring);
   shaders.setFault("");
   viewer.setMeasured(detail.times);
   list.showFrame();
+  if (fault) return;
+  costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   if (detail.isCoarse) return;
   list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;
   // After a pause: the next picture of a drag does not wait for them.
-  clearTimeout(measuring);
   measuring = setTimeout(() => {
     histogram.load(viewer.frame);
     const isFinal = viewer.view === "final" && viewer.exposure === 0;

@@ -1,7 +1,9 @@
 // The shaders of the effects of the look's steps, beside the picture: written on save, with GLSL's faults at their lines.
 import { get } from "./api.js";
+import { CodeArea } from "./code_area.js";
 import { button, element, notify, options } from "./elements.js";
-import { CodeArea, faultList } from "./text_view.js";
+import { glslWords } from "./glsl_words.js";
+import { faultList } from "./text_view.js";
 
 /** "effects/tint/tint.frag:6:17: error: 'parm' undeclared   [pass tint, llvmpipe ...]" */
 const FAULT = /^(.+?):(\d+)(?::(\d+))?: (?:error|warning): (.*)$/;
@@ -32,7 +34,12 @@ export class ShaderView {
     this.revertButton = button("Revert", () => this.revert(), { title: "Show the shader as it is on disk again" });
     this.note = element("p", { class: "hint shown", id: "shader-help" });
     this.list = element("div", { class: "shader-faults", role: "alert", hidden: true });
-    this.code = new CodeArea({ label: "The shader as GLSL", describedBy: "shader-help" });
+    this.code = new CodeArea({
+      label: "The shader as GLSL",
+      describedBy: "shader-help",
+      language: "glsl",
+      complete: (text, at) => glslWords(text, at, store.effects.get(this.effect)),
+    });
     this.code.area.addEventListener("input", () => {
       const isAsOnDisk = this.code.value === this.stored;
       if (isAsOnDisk) this.#drafts.delete(this.key);

@@ -1,7 +1,8 @@
 // Values that the program takes from the frame: the depth of an object for a focus, its light for an exposure. And keys of
 // such values: a focus that racks from one object to another.
-import { button, element, iconButton, options } from "./elements.js";
-import { INTERPOLATIONS, keysOf, withKeys } from "./keyed.js";
+import { EaseChoices, EaseHandles, isCurve, shareAt } from "./ease.js";
+import { button, element, iconButton } from "./elements.js";
+import { Keyed } from "./keyed.js";
 import { field } from "./number.js";
 import { asText, short } from "./values.js";
 
@@ -47,24 +48,34 @@ export function sourceControl({ label, parameter, commit, measured, objects, des
   };
 }
 
-/** Keys of which some come from the frame: a line for each. */
+/** Keys of which some come from the frame: a line for each, and a curve where the scrubber's stretch has one. */
 export function rackControl({ label, parameter, commit, time, measured, objects }) {
-  let value = null;
+  let keyed = null;
   const lines = element("ul", { class: "rack", "aria-label": `Keys of ${label}` }),
     number = element("output", { class: "unit", "aria-label": `${label} in this frame` }),
-    choice = element("select", { "aria-label": `Interpolation of ${label}`, title: "Between two keys" });
-  options(
-    choice,
-    INTERPOLATIONS.map((name) => [name, name === "smooth" ? "eased" : name]),
-    "linear",
+    choices = new EaseChoices({ label, time, change: commit }),
+    plot = element("div", { class: "curve-plot" }),
+    frame = element("div", { class: "curve-frame", hidden: true }, plot);
+  const flip = ([x, y]) => [x, 1 - y];
+  const handles = new EaseHandles({
+    label,
+    plot,
+    place: flip,
+    shares: flip,
+    change: (ease, gesture) => commit(keyed.withEaseOf(choices.index, ease), gesture),
+  });
+  const [picture, line, arms] = ["svg", "path", "path"].map((name) =>
+    document.createElementNS("http://www.w3.org/2000/svg", name),
   );
-  choice.addEventListener("change", () => commit({ ...value, interpolation: choice.value }));
-  const moved = (keys, i, frame) =>
-    withKeys(
-      value,
-      keys.map(([at, one], k) => [k === i ? frame : at, one]),
-    );
-  const line = ([frame, one], i, keys) => {
+  line.setAttribute("class", "line");
+  arms.setAttribute("class", "arms");
+  for (const path of [line, arms]) path.setAttribute("vector-effect", "non-scaling-stroke");
+  for (const [name, text] of Object.entries({ viewBox: "0 0 1 1", preserveAspectRatio: "none", "aria-hidden": "true" }))
+    picture.setAttribute(name, text);
+  picture.append(line, arms);
+  plot.append(picture, handles.node);
+  const moved = (i, at) => keyed.withKeys(keyed.keys.with(i, { ...keyed.keys[i], frame: at }));
+  const lineOf = ({ frame, literal }, i, keys) => {
     const at = field({
       label: `${label}, frame of key ${i + 1}`,
       className: "field",
@@ -72,14 +83,14 @@ export function rackControl({ label, parameter, commit, time, measured, objects 
       parse: (text) => {
         const next = Number(text);
         if (!Number.isInteger(next)) return { error: `${text} is not a frame` };
-        return keys.some(([other], k) => k !== i && other === next)
+        return keys.some((key, k) => k !== i && key.frame === next)
           ? { error: `frame ${next} has a key already` }
           : { value: next };
       },
-      commit: (next) => commit(moved(keys, i, next)),
+      commit: (next) => commit(moved(i, next)),
     });
     at.show(String(frame));
-    const words = sourceWords(one, parameter, objects.names);
+    const words = sourceWords(literal, parameter, objects.names);
     return element(
       "li",
       {},
@@ -90,27 +101,34 @@ export function rackControl({ label, parameter, commit, time, measured, objects 
         title: `Go to frame ${frame}`,
         "aria-label": `${words}: go to frame ${frame}`,
       }),
-      iconButton("remove", `Remove the key of ${label} at frame ${frame}`, () => {
-        const rest = keys.toSpliced(i, 1);
-        commit(rest.length ? withKeys(value, rest) : one);
-      }),
+      iconButton("remove", `Remove the key of ${label} at frame ${frame}`, () => commit(keyed.without(i))),
     );
   };
   const showFrame = () => {
     const now = measuredWords(measured(), parameter);
     number.textContent = now && `${now} at ${time.frame}`;
+    if (!keyed) return;
+    choices.show(keyed);
+    const ease = keyed.keys.length > 1 ? keyed.easeOf(choices.index) : null;
+    frame.hidden = !isCurve(ease);
+    handles.show(ease);
+    if (frame.hidden) return;
+    const points = Array.from({ length: 33 }, (_, i) => flip([i / 32, shareAt(ease, i / 32)]).join());
+    line.setAttribute("d", `M${points.join("L")}`);
+    arms.setAttribute("d", handles.lines);
   };
   let signature = "";
   return {
-    nodes: [element("div", { class: "wide" }, lines, element("div", { class: "curve-foot" }, choice, number))],
+    nodes: [
+      element("div", { class: "wide" }, lines, frame, element("div", { class: "curve-foot" }, choices.nodes, number)),
+    ],
     isTall: true,
     showFrame,
     update(entry) {
-      value = entry.value;
-      choice.value = value.interpolation ?? "linear";
-      const keys = keysOf(value),
-        next = JSON.stringify([keys, keys.map(([, one]) => sourceWords(one, parameter, objects.names))]);
-      if (next !== signature) lines.replaceChildren(...keys.map((key, i) => line(key, i, keys)));
+      keyed = new Keyed(entry.value);
+      const { keys } = keyed,
+        next = JSON.stringify([keys, keys.map(({ literal }) => sourceWords(literal, parameter, objects.names))]);
+      if (next !== signature) lines.replaceChildren(...keys.map((key, i) => lineOf(key, i, keys)));
       signature = next;
       showFrame();
     },

@@ -89,6 +89,7 @@ class StepCard {
     this.up = iconButton("up", "Move up", () => this.list.move(this, -1), { shortcut: "Alt+ArrowUp" });
     this.down = iconButton("down", "Move down", () => this.list.move(this, 1), { shortcut: "Alt+ArrowDown" });
     this.body = element("div", { class: "body", id: body, hidden: true });
+    this.fault = element("p", { class: "step-fault", role: "alert", hidden: true });
     this.node = element(
       "li",
       { class: "step", "data-step": nameOf(step) },
@@ -103,6 +104,7 @@ class StepCard {
         this.down,
         iconButton("remove", "Remove", () => this.list.remove(this), { shortcut: "Delete" }),
       ),
+      this.fault,
       this.body,
     );
     this.node.addEventListener("keydown", (event) => this.onKey(event));
@@ -346,6 +348,15 @@ export class StepList {
 
   showFrame() {
     for (const card of this.cards) card.showFrame();
+  }
+
+  /** {step, message} of what the frame lacks for a step; undefined: it lacks nothing. */
+  showFault(fault) {
+    for (const card of this.cards) {
+      const isAtFault = fault !== undefined && nameOf(card.step) === fault.step;
+      card.fault.hidden = !isAtFault;
+      card.fault.textContent = isAtFault ? fault.message : "";
+    }
   }
 
   /** Milliseconds of each step, by name. */

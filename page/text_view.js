@@ -1,67 +1,32 @@
-// The look as text, with line numbers, and its faults at their lines.
-import { button, element } from "./elements.js";
+// The look as text, and its faults at their lines.
+import { get } from "./api.js";
+import { CodeArea } from "./code_area.js";
+import { button, element, notify } from "./elements.js";
+import { lookWords } from "./look_words.js";
 
 const PAUSE_MS = 500; // after the last key, before the text is sent
 
-/** Lines of text with their numbers; those with faults are marked. */
-export class CodeArea {
-  #signature = null;
-
-  constructor({ label, describedBy }) {
-    this.numbers = element("div", { class: "numbers", "aria-hidden": "true" });
-    this.area = element("textarea", {
-      class: "text",
-      spellcheck: "false",
-      autocomplete: "off",
-      wrap: "off",
-      "aria-label": label,
-      "aria-describedby": describedBy,
-    });
-    this.area.addEventListener("scroll", () => (this.numbers.scrollTop = this.area.scrollTop));
-    this.node = element("div", { class: "editor" }, this.numbers, this.area);
-  }
-
-  get value() {
-    return this.area.value;
-  }
-  set value(text) {
-    if (text === this.area.value) return;
-    const { selectionStart, scrollTop } = this.area;
-    this.area.value = text;
-    this.area.setSelectionRange(selectionStart, selectionStart);
-    this.area.scrollTop = scrollTop;
-  }
-
-  /** `faulty`: lines, from 1. */
-  number(faulty) {
-    const count = this.area.value.split("\n").length,
-      marked = new Set(faulty),
-      signature = `${count} ${[...marked]}`;
-    if (signature === this.#signature) return;
-    this.#signature = signature;
-    this.numbers.replaceChildren(
-      ...Array.from({ length: count }, (_, i) =>
-        element("div", { class: marked.has(i + 1) ? "faulty" : null }, String(i + 1)),
-      ),
-    );
-    this.numbers.scrollTop = this.area.scrollTop;
-  }
-
-  goTo(line, column = 1) {
-    const lines = this.area.value.split("\n"),
-      at = lines.slice(0, line - 1).reduce((sum, one) => sum + one.length + 1, 0);
-    this.area.focus();
-    this.area.setSelectionRange(at + column - 1, at + (lines[line - 1]?.length ?? 0));
-    const height = this.area.scrollHeight / lines.length;
-    this.area.scrollTop = Math.max(0, (line - 4) * height);
-  }
-}
-
 export class TextView {
-  constructor(store) {
+  #schema = null;
+
+  /** `names`: of the frame's objects. */
+  constructor(store, names) {
     this.store = store;
-    this.code = new CodeArea({ label: "The look as JSON", describedBy: "text-help" });
+    this.names = names;
+    this.code = new CodeArea({
+      label: "The look as JSON",
+      describedBy: "text-help",
+      language: "json",
+      complete: (text, at) =>
+        lookWords(
+          text,
+          at,
+          this.#schema?.schema,
+          names.list.flatMap(({ name }) => name ?? []),
+        ),
+    });
     this.area = this.code.area;
+    this.area.addEventListener("focus", () => this.#loadWords());
     this.area.addEventListener("input", () => {
       this.number();
       clearTimeout(this.timer);
@@ -74,10 +39,22 @@ export class TextView {
     const help = element(
       "p",
       { class: "hint shown", id: "text-help" },
-      "The text is applied half a second after the last key. Tab leaves the text.",
+      "The text is applied half a second after the last key. Ctrl+Space lists what fits. Tab leaves the text.",
     );
     this.node = element("div", { class: "text-view" }, this.code.node, help);
     this.sent = null;
+  }
+
+  /** The schema of the effects as they are now, and the names of this frame. */
+  async #loadWords() {
+    const { effects_revision } = this.store.state;
+    this.names.load();
+    if (this.#schema?.revision === effects_revision) return;
+    try {
+      this.#schema = { revision: effects_revision, schema: await get("/api/schema") };
+    } catch (error) {
+      notify(error.message, true);
+    }
   }
 
   async send() {

@@ -3,6 +3,7 @@ import { get } from "./api.js";
 import { PictureCanvas } from "./canvas.js";
 import { button, element, icon, iconButton, notify } from "./elements.js";
 import { keyedFrames } from "./keyed.js";
+import { Legend } from "./legend.js";
 import { field } from "./number.js";
 import { Pictures } from "./pictures.js";
 import { nameOf } from "./steps.js";
@@ -56,7 +57,7 @@ export class Viewer extends EventTarget {
     });
     this.zoomWords = element("output", { class: "zoom", "aria-label": "Zoom" }, "");
     this.badge = element("span", { class: "badge", hidden: true });
-    this.legend = element("span", { class: "legend", role: "status", hidden: true });
+    this.legend = new Legend();
     this.busy = element("span", { class: "busy", hidden: true }, "drawing");
     const tool = (label, ...nodes) =>
       element("div", { class: "tool" }, element("span", { class: "label" }, label), nodes);
@@ -114,7 +115,7 @@ export class Viewer extends EventTarget {
       this.wipe,
       this.leftName,
       this.rightName,
-      element("div", { class: "flags" }, this.legend, this.badge, this.busy),
+      element("div", { class: "flags" }, this.legend.node, this.badge, this.busy),
     );
 
     this.frameSlider = element("input", { type: "range", min: 0, step: 1, "aria-label": "Frame" });
@@ -165,9 +166,11 @@ export class Viewer extends EventTarget {
     });
     const truths = [...new Set(Object.values(capture.truths).flat())],
       roles = capture.roles.map(({ name }) => `role:${name}`);
-    const lenses = steps.filter(({ effect, enabled }) => enabled && hasCircles(this.store.effects.get(effect)));
+    const drawn = steps.filter(({ enabled }) => enabled),
+      lenses = drawn.filter(({ effect }) => hasCircles(this.store.effects.get(effect)));
     const groups = [
       ["Picture", ["final", "before"]],
+      ["Picture before a step", drawn.slice(1).flatMap((step) => (step.effect ? [`before:${nameOf(step)}`] : []))],
       ["Limits of sharpness", lenses.map((step) => `sharp:${nameOf(step)}`)],
       ["Truth", truths.flatMap((name) => [`truth:${name}`, `difference:${name}`])],
       ["Roles of the capture", roles],
@@ -190,7 +193,7 @@ export class Viewer extends EventTarget {
         ...groups.filter(([, names]) => names.length).map(group),
       );
       if (!this.views.includes(this.view)) this.view = "final";
-      if (this.other !== "kept" && !this.views.includes(this.other)) this.other = "";
+      if (this.other !== "kept" && !this.views.includes(this.other)) [this.other, this.picture.second] = ["", null];
     }
     this.refresh();
   }
@@ -210,6 +213,7 @@ export class Viewer extends EventTarget {
     view
       .replace(/^difference:/, "difference to ")
       .replace(/^sharp:/, "sharp by ")
+      .replace(/^before:/, "before ")
       .replace(/^\w+:/, "");
 
   refresh() {
@@ -305,19 +309,10 @@ export class Viewer extends EventTarget {
     }
   }
 
-  /** What a picture's times say of the frame: values from it, and the distances that are sharp. */
-  setMeasured({ measured = [], sharp_m } = {}) {
-    this.measured = new Map(measured.map(({ step, param, value }) => [`${step}.${param}`, value]));
-    this.legend.hidden = !this.view.startsWith("sharp:");
-    if (this.legend.hidden) return;
-    const [near, far] = (sharp_m ?? []).map((m) => `${short(m, 3)} m`);
-    this.legend.replaceChildren(
-      element("span", { class: "swatch front" }),
-      near ? `in front of ${near}` : "in front",
-      element("span", { class: "swatch behind" }),
-      far ? `behind ${far}` : "behind",
-      near ? "" : "; nothing is sharp",
-    );
+  /** What a picture's times say of the frame: values from it, and what its colours mean. */
+  setMeasured(times) {
+    this.measured = new Map((times?.measured ?? []).map(({ step, param, value }) => [`${step}.${param}`, value]));
+    this.legend.show(this.view, times ?? {});
   }
   setBadge(words, isError = true) {
     this.badge.textContent = words;
@@ -360,7 +355,9 @@ export class Viewer extends EventTarget {
       this.picture[detail.name] = { bitmap: detail.bitmap, isCoarse: detail.isCoarse };
       this.picture.draw();
       if (detail.name === "first") {
-        if (!this.store.hasFaults) this.setBadge(detail.isCoarse ? "1/4" : "", false);
+        const fault = detail.times?.fault;
+        if (fault) this.setBadge(`capture without steps: ${fault.message}`);
+        else if (!this.store.hasFaults) this.setBadge(detail.isCoarse ? "1/4" : "", false);
         this.canvas.dataset.revision = detail.wish.revision;
         this.canvas.dataset.scale = detail.isCoarse ? 4 : 1;
         this.dispatchEvent(new CustomEvent("picture", { detail }));

@@ -7,6 +7,7 @@
 #include "framework/document/units.h"
 #include "framework/effect/description.h"
 #include "framework/image/camera.h"
+#include "framework/look/ease.h"
 #include "framework/look/look_grammar.h"
 #include "framework/look/look_schema.h"
 #include "framework/look/pipeline.h"
@@ -22,15 +23,20 @@ Json or_variable(Json form) {
     return schema::any_of({std::move(form), schema::variable()});
 }
 
-/// {"keys": {"1": 2.0, "24": 5.6}}; `value` is of one key.
+/// How values go from one key to the next.
+Json ease() {
+    const Json handle = or_variable({{"type", "number"}, {"minimum", 0}, {"maximum", 1}});
+    return or_variable(schema::any_of({schema::one_of(ease_names()), schema::array_of(handle, 4, 4)}));
+}
+
+/// {"keys": {"1": 2.0, "24": {"value": 5.6, "interpolation": "smooth"}}}; `value` is of one key.
 Json keyed(const Json& value) {
+    Json key = {{"anyOf", {value, schema::object({{"value", value}, {"interpolation", ease()}}, {"value"})}}};
     Json keys = {{"type", "object"},
-                 {"patternProperties", {{"^-?[0-9]+$", value}}},
+                 {"patternProperties", {{"^-?[0-9]+$", std::move(key)}}},
                  {"additionalProperties", false},
                  {"minProperties", 1}};
-    return schema::object({{"keys", or_variable(keys)},
-                           {"interpolation", or_variable(schema::one_of({"linear", "smooth", "step"}))}},
-                          {"keys"});
+    return schema::object({{"keys", or_variable(keys)}, {"interpolation", ease()}}, {"keys"});
 }
 
 /// {"from": "depth", "uv": [0.5, 0.5]} and {"from": "depth", "object": "Wheel"}

@@ -62,8 +62,8 @@ std::vector<ParamValue> PipelineStep::known_values(const ParamSpec& spec) const 
     if (const auto* literal = std::get_if<ParamValue>(&asked->second)) return {*literal};
     std::vector<ParamValue> known;
     if (const auto* keyed = std::get_if<KeyedValue>(&asked->second))
-        for (const auto& [frame, value] : keyed->keys)
-            if (const auto* literal = std::get_if<ParamValue>(&value)) known.push_back(*literal);
+        for (const auto& [frame, key] : keyed->keys)
+            if (const auto* literal = std::get_if<ParamValue>(&key.value)) known.push_back(*literal);
     return known;
 }
 

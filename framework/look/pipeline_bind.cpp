@@ -314,7 +314,7 @@ private:
         auto* literal = std::get_if<ParamValue>(&*parsed);
         if (is_file_type(spec->type) && literal) complete(*literal);
         if (auto* keyed = std::get_if<KeyedValue>(&*parsed); keyed && is_file_type(spec->type))
-            for (auto& [frame, file] : keyed->keys) complete(std::get<ParamValue>(file));
+            for (auto& [frame, key] : keyed->keys) complete(std::get<ParamValue>(key.value));
         step.values[name] = std::move(*parsed);
         step.origins[name] = origin;
         step.places[name] = value.place;

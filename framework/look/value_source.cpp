@@ -42,13 +42,10 @@ struct SourceReader {
     std::optional<ValueSource> keys(const Node& node) {
         ObjectReader reader(node, label, diagnostics);
         const Node* keys = reader.object("keys", ObjectReader::Presence::required);
-        const auto interpolation =
-            reader.choice("interpolation", std::vector<std::string>{"linear", "smooth", "step"});
+        KeyedValue value;
+        value.ease = read_ease(reader, label, diagnostics).value_or(Ease{});
         reader.finish();
         if (!keys) return std::nullopt;
-        KeyedValue value;
-        if (interpolation == "smooth") value.interpolation = KeyedValue::Interpolation::smooth;
-        if (interpolation == "step") value.interpolation = KeyedValue::Interpolation::step;
         bool sound = !keys->members.empty();
         if (!sound) diagnostics.error(keys->place, label + ": 'keys' has no frame");
         if (spec.bind == ParamBind::define) {
@@ -59,7 +56,7 @@ struct SourceReader {
             const auto frame = frame_number(member.key);
             if (!frame)
                 diagnostics.error(member.key_place, label + ": '" + member.key + "' is not a frame number");
-            auto parsed = key(member.value);
+            auto parsed = eased_key(member.value);
             if (frame && parsed && value.keys.contains(*frame))
                 diagnostics.error(member.key_place,
                                   label + ": frame " + std::to_string(*frame) + " has two keys");
@@ -67,6 +64,20 @@ struct SourceReader {
             if (frame && parsed) value.keys.insert_or_assign(*frame, std::move(*parsed));
         }
         return sound ? std::optional<ValueSource>(value) : std::nullopt;
+    }
+
+    std::optional<KeyedValue::Key> eased_key(const Node& node) {
+        const bool has_ease = node.is_object() && node.find("value");
+        if (!has_ease) {
+            auto value = key(node);
+            return value ? std::optional(KeyedValue::Key{std::move(*value), {}}) : std::nullopt;
+        }
+        ObjectReader reader(node, label, diagnostics);
+        const Node* literal = reader.any("value");
+        const auto ease = read_ease(reader, label, diagnostics);
+        reader.finish();
+        auto value = key(*literal);
+        return value ? std::optional(KeyedValue::Key{std::move(*value), ease}) : std::nullopt;
     }
 
     std::optional<KeyValue> key(const Node& node) {
@@ -260,15 +271,17 @@ ValueSource as_source(const KeyValue& key) {
 ParamValue keyed_at(const KeyedValue& value, const ParamSpec& spec, const std::string& label,
                     const Capture& capture) {
     const int frame = capture.header.frame;
-    const auto of = [&](const KeyValue& key) { return evaluate(as_source(key), spec, label, capture); };
+    const auto of = [&](const KeyedValue::Key& key) {
+        return evaluate(as_source(key.value), spec, label, capture);
+    };
     const auto after = value.keys.lower_bound(frame);
     if (after == value.keys.end()) return of(value.keys.rbegin()->second);
     if (after == value.keys.begin() || after->first == frame) return of(after->second);
     const auto before = std::prev(after);
-    if (value.interpolation == KeyedValue::Interpolation::step) return of(before->second);
-    double t = double(frame - before->first) / double(after->first - before->first);
-    if (value.interpolation == KeyedValue::Interpolation::smooth) t = t * t * (3 - 2 * t);
-    return interpolate(spec, of(before->second), of(after->second), t);
+    const Ease ease = before->second.ease.value_or(value.ease);
+    if (ease.kind == Ease::Kind::step) return of(before->second);
+    const double t = double(frame - before->first) / double(after->first - before->first);
+    return interpolate(spec, of(before->second), of(after->second), ease.share(t));
 }
 
 }  // namespace
@@ -286,7 +299,7 @@ std::vector<const PixelValue*> pixel_values(const ValueSource& source) {
     std::vector<const PixelValue*> values;
     if (const auto* keyed = std::get_if<KeyedValue>(&source))
         for (const auto& [frame, key] : keyed->keys)
-            if (const auto* pixels = std::get_if<PixelValue>(&key)) values.push_back(pixels);
+            if (const auto* pixels = std::get_if<PixelValue>(&key.value)) values.push_back(pixels);
     return values;
 }
 
@@ -303,12 +316,13 @@ std::string format_source(const ValueSource& source) {
     }
     const auto& keyed = std::get<KeyedValue>(source);
     std::string text;
-    for (const auto& [frame, value] : keyed.keys)
+    for (const auto& [frame, key] : keyed.keys) {
+        const std::string value = format_source(as_source(key.value));
         text += (text.empty() ? "" : ", ") + ("\"" + std::to_string(frame) + "\": ") +
-                format_source(as_source(value));
-    const std::array<std::string, 3> names = {"linear", "smooth", "step"};
-    return "{\"keys\": {" + text + "}, \"interpolation\": \"" + names[std::size_t(keyed.interpolation)] +
-           "\"}";
+                (key.ease ? "{\"value\": " + value + ", \"interpolation\": " + format_ease(*key.ease) + "}"
+                          : value);
+    }
+    return "{\"keys\": {" + text + "}, \"interpolation\": " + format_ease(keyed.ease) + "}";
 }
 
 std::vector<std::string> roles_of(const ValueSource& source) {

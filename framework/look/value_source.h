@@ -10,6 +10,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/document/param.h"
+#include "framework/look/ease.h"
 
 namespace aftershade {
 
@@ -35,9 +36,13 @@ using KeyValue = std::variant<ParamValue, CameraValue, PixelValue>;
 /// {"keys": {"1": 2.0, "24": {"from": ...}}, "interpolation": "linear"}: by frame, constant before the first
 /// key and after the last. A key from the capture has the value that the capture gives for each frame.
 struct KeyedValue {
-    enum class Interpolation { linear, smooth, step };  ///< smooth eases in and out of each key
-    std::map<int, KeyValue> keys;
-    Interpolation interpolation = Interpolation::linear;
+    /// 2.0, or {"value": 2.0, "interpolation": "smooth"}
+    struct Key {
+        KeyValue value;
+        std::optional<Ease> ease;  ///< to the next key; absent: the one of all keys
+    };
+    std::map<int, Key> keys;
+    Ease ease;
 };
 
 using ValueSource = std::variant<ParamValue, KeyedValue, CameraValue, PixelValue>;

@@ -10,6 +10,9 @@
 
 namespace aftershade::serve {
 
+/// A header of the answer whose picture is the capture's, because a step takes from it what it has not.
+inline constexpr const char* kFaultHeader = "X-Aftershade-Fault";
+
 /// What is to be drawn, without anything that only one process has.
 struct DrawRequest {
     enum class Kind {
@@ -29,7 +32,7 @@ struct DrawRequest {
     std::uint64_t effects_revision = 0;
     int frame = 0;
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
-    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME, difference:NAME
+    std::string view = "final";  ///< as that of a PictureRequest
     double exposure_ev = 0;
     bool continues = false;  ///< effects with history see the frame before it, where that was drawn last
     int x = 0, y = 0;        ///< of a probe

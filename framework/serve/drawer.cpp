@@ -110,12 +110,16 @@ Response answer(const DrawRequest& request, const ServeOptions& options, Looks& 
         case DrawRequest::Kind::thumbnail:
         case DrawRequest::Kind::picture: break;
     }
-    MadePicture made = maker.make(wanted);
-    return {
+    // A thumbnail shows what its step does: the capture alone would say that it does nothing.
+    MadePicture made =
+        request.kind == DrawRequest::Kind::picture ? maker.make_or_show_capture(wanted) : maker.make(wanted);
+    Response response{
         200,
         "image/png",
         std::move(made.png),
         {{"X-Aftershade-Times", made.times}, {"X-Aftershade-Revision", std::to_string(request.revision)}}};
+    if (made.has_fault) response.headers[kFaultHeader] = "capture";
+    return response;
 }
 
 /// What draws the capture of the last request.

@@ -29,17 +29,37 @@ constexpr std::array<std::string_view, 5> kStepKeys = {"name", "mix", "preset", 
 }
 
 /// One line, with a space behind each comma and colon, as people write looks.
-std::string text_of(const Json& value) {
+std::string line_of(const Json& value) {
     if (value.is_array()) {
         std::string text;
-        for (const Json& item : value) text += (text.empty() ? "" : ", ") + text_of(item);
+        for (const Json& item : value) text += (text.empty() ? "" : ", ") + line_of(item);
         return "[" + text + "]";
     }
     if (!value.is_object()) return value.dump();
     std::string text;
     for (const auto& [key, item] : value.items())
-        text += (text.empty() ? "" : ", ") + Json(key).dump() + ": " + text_of(item);
+        text += (text.empty() ? "" : ", ") + Json(key).dump() + ": " + line_of(item);
     return text.empty() ? "{}" : "{ " + text + " }";
+}
+
+/// What the lines of a text around a new value are like.
+struct Lines {
+    std::string indent;
+    std::string end;
+};
+
+/// Objects, and lists of them, that are too long for a line have one for each part.
+std::string text_of(const Json& value, const Lines& lines) {
+    constexpr std::size_t kMostColumns = 110;
+    std::string line = line_of(value);
+    const bool is_list = value.is_array() && !value.empty() && value.front().is_object();
+    if (line.size() <= kMostColumns || (!value.is_object() && !is_list)) return line;
+    const Lines inner{lines.indent + "  ", lines.end};
+    std::string text;
+    for (const auto& [key, item] : value.items())
+        text += (text.empty() ? "" : ",") + inner.end + inner.indent +
+                (is_list ? "" : Json(key).dump() + ": ") + text_of(item, inner);
+    return (is_list ? "[" : "{") + text + lines.end + lines.indent + (is_list ? "]" : "}");
 }
 
 /// The white space at the beginning of the line that `at` is in; and whether nothing else stands before it.
@@ -57,6 +77,11 @@ LineStart line_start(std::string_view text, std::size_t at) {
 /// How a text ends its lines.
 std::string line_end(std::string_view text) {
     return text.find("\r\n") == std::string_view::npos ? "\n" : "\r\n";
+}
+
+/// Those of the line that `at` is in.
+Lines lines_at(std::string_view text, std::size_t at) {
+    return {line_start(text, at).indent, line_end(text)};
 }
 
 /// Behind a comment that follows `at` on its line, where nothing but blanks stands between; else `at`.
@@ -142,6 +167,32 @@ void remove_part(std::string& text, const List& list, std::size_t index) {
     if (lone_comma != std::string::npos) text.erase(lone_comma, 1);
 }
 
+void set_member(std::string& text, const SpanNode& object, const std::string& key, const Json& value);
+
+/// The text of an object of several lines with other members. Each stays where it is, and so do the comments
+/// beside it; new ones come before the member that follows them in `value`.
+std::string with_members(std::string text, const Json& value) {
+    std::vector<std::string> gone;
+    for (const SpanMember& member : spans_of(text).members)
+        if (!value.contains(member.key)) gone.push_back(member.key);
+    // The last one is not taken out before another one is there: an empty object would lose its lines.
+    for (auto item = value.rbegin(); item != value.rend(); ++item) {
+        const SpanNode object = spans_of(text);
+        if (object.find(item.key())) {
+            set_member(text, object, item.key(), *item);
+            continue;
+        }
+        const auto next = item.base();
+        const SpanMember* follower = next == value.end() ? nullptr : object.find(next.key());
+        const std::size_t at =
+            follower ? std::size_t(follower - object.members.data()) : object.members.size();
+        const Lines lines = lines_at(text, object.members.front().key_span.begin);
+        insert_part(text, list_of(object), at, Json(item.key()).dump() + ": " + text_of(*item, lines));
+    }
+    for (const std::string& key : gone) set_member(text, spans_of(text), key, nullptr);
+    return text;
+}
+
 /// `value` null: the key goes.
 void set_member(std::string& text, const SpanNode& object, const std::string& key, const Json& value) {
     if (object.kind != SpanNode::Kind::object) refuse("'" + key + "' has its place in an object");
@@ -154,10 +205,19 @@ void set_member(std::string& text, const SpanNode& object, const std::string& ke
         const Span span = member->value.span;
         // The same value in the author's own spelling stays as it was written.
         const Json before = Json::parse(span.of(text), nullptr, false, true);
-        if (before != value) text.replace(span.begin, span.end - span.begin, text_of(value));
+        if (before == value) return;
+        const bool has_lines = span.of(text).find('\n') != std::string_view::npos;
+        const bool is_inside =
+            has_lines && value.is_object() && !value.empty() && before.is_object() && !before.empty();
+        text.replace(span.begin, span.end - span.begin,
+                     is_inside ? with_members(std::string(span.of(text)), value)
+                               : text_of(value, lines_at(text, member->key_span.begin)));
         return;
     }
-    insert_part(text, list_of(object), object.members.size(), Json(key).dump() + ": " + text_of(value));
+    const Lines lines =
+        lines_at(text, object.members.empty() ? object.span.begin : object.members.back().key_span.begin);
+    insert_part(text, list_of(object), object.members.size(),
+                Json(key).dump() + ": " + text_of(value, lines));
 }
 
 const SpanNode& steps_of(const SpanNode& root) {
@@ -217,7 +277,7 @@ void set_variable(std::string& text, const SpanNode& root, const Json& edit) {
     }
     if (value.is_null()) return;
     const auto steps = std::size_t(root.find("steps") - root.members.data());
-    insert_part(text, list_of(root), steps, "\"vars\": " + text_of(Json{{name, value}}));
+    insert_part(text, list_of(root), steps, "\"vars\": " + line_of(Json{{name, value}}));
 }
 
 /// Steps change places; what stands between them stays where it is.
@@ -255,10 +315,10 @@ void add_step(std::string& text, const SpanNode& steps, const Json& edit) {
     if (const std::string_view list = whole.of(text); list == "[]" && text.find('\n') < whole.begin) {
         const std::string end = line_end(text), indent = line_start(text, whole.begin).indent;
         text.replace(whole.begin, list.size(),
-                     "[" + end + indent + "  " + text_of(step) + end + indent + "]");
+                     "[" + end + indent + "  " + line_of(step) + end + indent + "]");
         return;
     }
-    insert_part(text, list_of(steps), at, text_of(step));
+    insert_part(text, list_of(steps), at, line_of(step));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "framework/base/option.h"
 #include "framework/base/path_bounds.h"
 #include "framework/effect/description.h"
+#include "framework/look/look_schema.h"
 #include "framework/serve/file_name.h"
 #include "framework/serve/look_edits.h"
 #include "framework/serve/look_state.h"
@@ -274,6 +275,17 @@ std::string LookModel::effects_json() const {
             list.push_back(nlohmann::ordered_json::parse(describe_json(*manifest)));
     }
     return list.dump();
+}
+
+std::string LookModel::schema_json() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<const EffectManifest*> manifests;
+    for (const std::string& id : effects_->ids()) {
+        Diagnostics faults;
+        const EffectManifest* manifest = effects_->find(id, faults);
+        if (manifest && !faults.has_errors()) manifests.push_back(manifest);
+    }
+    return look_schema(manifests);
 }
 
 bool LookModel::has_effect(const std::string& effect) const {

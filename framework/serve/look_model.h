@@ -80,6 +80,8 @@ public:
     std::uint64_t effects_revision() const;
     /// JSON: what `describe --json` gives for each effect without faults.
     std::string effects_json() const;
+    /// JSON Schema of looks with these effects.
+    std::string schema_json() const;
     bool has_effect(const std::string& effect) const;
     bool is_read_only() const { return read_only_; }
     /// Throws Refusal 404 where there is no such effect.

@@ -275,6 +275,9 @@ void PageServer::answer(const Request& request, const Reply& reply) {
         {"/api/effects", {"GET", now([&] {
                               return Response{200, "application/json", setup_.look.effects_json()};
                           })}},
+        {"/api/schema", {"GET", now([&] {
+                             return Response{200, "application/json", setup_.look.schema_json()};
+                         })}},
         {"/api/picture",
          {"GET",
           [&] {

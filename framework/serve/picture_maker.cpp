@@ -47,8 +47,27 @@ nlohmann::ordered_json measured_json(const Pipeline& pipeline, const Capture& ca
     return list;
 }
 
+/// A header of HTTP is ASCII.
+std::string header_text(const nlohmann::ordered_json& json) {
+    return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
 bool makes(const Pipeline& pipeline, const std::string& role) {
     return pipeline.writes_role(role);
+}
+
+/// What the view shows the result of.
+Pipeline pipeline_of(const PictureRequest& request) {
+    Pipeline pipeline = request.look->pipeline;
+    if (request.view.starts_with("tap:") || request.view.starts_with(kSharpView))
+        pipeline.taps = {tap_of(request.view, pipeline)};
+    if (!request.view.starts_with(kBeforeView)) return pipeline;
+    const std::string name = request.view.substr(kBeforeView.size());
+    const auto step = std::ranges::find(pipeline.steps, name, &PipelineStep::name);
+    if (step == pipeline.steps.end())
+        throw Error(ErrorKind::usage, "the look has no enabled step '" + name + "'");
+    pipeline.steps.erase(step, pipeline.steps.end());
+    return pipeline;
 }
 
 std::string joined_roles(const std::vector<std::string>& roles) {
@@ -71,10 +90,7 @@ PictureMaker::PictureMaker(Sequence sequence, std::vector<Profile> profiles, Rea
 
 PictureMaker::~PictureMaker() = default;
 
-void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request) {
-    Pipeline pipeline = request.look->pipeline;
-    if (request.view.starts_with("tap:") || request.view.starts_with(kSharpView))
-        pipeline.taps = {tap_of(request.view, pipeline)};
+void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request, Pipeline pipeline) {
     const bool is_new = !scaled.pipeline || scaled.look->effects_revision != request.look->effects_revision ||
                         !pipeline.has_form_of(*scaled.pipeline);
     if (!scaled.pipeline) scaled.pipeline = std::make_unique<Pipeline>();
@@ -147,12 +163,12 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
     context_.make_current();
     Scaled& scaled = scaled_[request.scale];
     const std::shared_ptr<const BoundText> before = scaled.look;  // until the renderer has let go of it
-    std::vector<std::string> roles = {makes(request.look->pipeline, kDisplayRole) ? kDisplayRole
-                                                                                  : kColorRole};
-    if (request.view.starts_with("role:") && makes(request.look->pipeline, request.view.substr(5)))
+    Pipeline pipeline = pipeline_of(request);
+    std::vector<std::string> roles = {makes(pipeline, kDisplayRole) ? kDisplayRole : kColorRole};
+    if (request.view.starts_with("role:") && makes(pipeline, request.view.substr(5)))
         roles.push_back(request.view.substr(5));
     const int form_before = scaled.form;
-    adopt(scaled, request);
+    adopt(scaled, request, std::move(pipeline));
     const bool follows = request.continues && is_next(scaled, request.frame) && scaled.form == form_before;
     const bool is_same = load(scaled, request);
     const std::string asked = joined_roles(roles);
@@ -176,31 +192,31 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
     return scaled;
 }
 
-Image PictureMaker::picture(const Scaled& scaled, const PictureRequest& request) const {
+ShownView PictureMaker::picture(const Scaled& scaled, const PictureRequest& request) const {
     const Loaded& loaded = *scaled.loaded;
     return view_picture(
         {request.view, request.exposure_ev, scaled.result, *loaded.captures[loaded.captures.size() / 2]});
 }
 
+ShownView PictureMaker::shown(const Scaled& scaled, const PictureRequest& request) {
+    if (request.view.starts_with(kTruthView)) {
+        const Capture& wanted = truth(request.frame, request.view.substr(kTruthView.size()));
+        return view_picture({"before", request.exposure_ev, scaled.result, wanted});
+    }
+    if (request.view.starts_with(kDifferenceView))
+        return difference(request, request.view.substr(kDifferenceView.size()));
+    const bool is_stored_role =
+        request.view.starts_with("role:") && !scaled.result.images.contains(request.view.substr(5));
+    if (!is_stored_role) return picture(scaled, request);
+    return view_picture({request.view, request.exposure_ev, scaled.result, whole_capture(request.frame)});
+}
+
 MadePicture PictureMaker::make(const PictureRequest& request) {
     const auto start = Clock::now();
     Scaled& scaled = draw(request);
-    Image shown;
-    const bool is_stored_role =
-        request.view.starts_with("role:") && !scaled.result.images.contains(request.view.substr(5));
-    if (request.view.starts_with(kTruthView)) {
-        const Capture& wanted = truth(request.frame, request.view.substr(kTruthView.size()));
-        shown = view_picture({"before", request.exposure_ev, scaled.result, wanted});
-    } else if (request.view.starts_with(kDifferenceView)) {
-        shown = difference(request, request.view.substr(kDifferenceView.size()));
-    } else if (is_stored_role) {
-        const Capture& whole = whole_capture(request.frame);
-        shown = view_picture({request.view, request.exposure_ev, scaled.result, whole});
-    } else {
-        shown = picture(scaled, request);
-    }
+    const ShownView view = shown(scaled, request);
     MadePicture made;
-    made.png = quick_png(shown, !is_false_color(request.view));
+    made.png = quick_png(view.picture, !is_false_color(request.view));
     nlohmann::ordered_json times;
     times["passes"] = nlohmann::ordered_json::array();
     for (const graph::PassTime& time : scaled.result.times) {
@@ -224,13 +240,46 @@ MadePicture PictureMaker::make(const PictureRequest& request) {
     for (const std::string& difference : header.differences) times["warnings"].push_back(difference);
     const Capture& middle = *scaled.loaded->captures[scaled.loaded->captures.size() / 2];
     times["measured"] = measured_json(*scaled.pipeline, middle);
+    if (!view.legend.is_null()) times["legend"] = view.legend;
     if (request.view.starts_with(kSharpView)) {
         const auto [near_m, far_m] = sharp_range_m(scaled.result.taps.begin()->second, middle);
         if (near_m <= far_m) times["sharp_m"] = {near_m, far_m};
     }
-    // A header of HTTP is ASCII.
-    made.times = times.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    made.times = header_text(times);
     return made;
+}
+
+MadePicture PictureMaker::make_or_show_capture(const PictureRequest& request) {
+    try {
+        return make(request);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::capture || request.view != "final") throw;
+        const Capture& whole = whole_capture(request.frame);
+        const ShownView view = view_picture({"before", request.exposure_ev, {}, whole});
+        return {quick_png(view.picture, true),
+                header_text({{"fault", {{"message", error.what()}, {"step", step_at_fault(request)}}}}),
+                true};
+    }
+}
+
+/// The first step that takes from the frame what the frame has not; "" where no single step is at fault.
+std::string PictureMaker::step_at_fault(const PictureRequest& request) {
+    const auto& scaled = scaled_[request.scale];
+    const CaptureHeader header = header_of(request.frame);
+    const std::vector<MissingRole> all_missing = find_missing_roles(request.look->pipeline, header);
+    const bool is_loaded = scaled.loaded && scaled.loaded->frame == request.frame;
+    for (const PipelineStep& step : request.look->pipeline.steps) {
+        for (const MissingRole& missing : all_missing)
+            if (missing.who.starts_with("step '" + step.name + "' ")) return step.name;
+        if (!is_loaded) continue;
+        const FrameInputs frame = FrameSetting{}.inputs(*scaled.loaded->captures.front());
+        try {
+            for (const ParamSpec& spec : step.manifest->params) resolve_param(step, spec, frame);
+        } catch (const Error&) {
+            return step.name;
+        }
+    }
+    return "";
 }
 
 const Capture& PictureMaker::whole_capture(int frame) {
@@ -281,7 +330,7 @@ nlohmann::ordered_json PictureMaker::metrics(const PictureRequest& request, cons
 }
 
 /// By channel, in linear light, so that the viewer's exposure makes small ones visible.
-Image PictureMaker::difference(const PictureRequest& request, const std::string& name) {
+ShownView PictureMaker::difference(const PictureRequest& request, const std::string& name) {
     const Capture& reference = truth(request.frame, name);
     Capture apart;
     apart.header = reference.header;
@@ -320,7 +369,7 @@ nlohmann::ordered_json PictureMaker::probe(const PictureRequest& request, int x,
 nlohmann::ordered_json PictureMaker::histogram(const PictureRequest& request) {
     PictureRequest full = request;
     full.view = "final";
-    return histogram_json(picture(draw(full), full));
+    return histogram_json(picture(draw(full), full).picture);
 }
 
 }  // namespace aftershade::serve

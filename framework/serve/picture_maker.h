@@ -20,6 +20,7 @@
 #include "framework/run/frame_loader.h"
 #include "framework/serve/frame_objects.h"
 #include "framework/serve/look_model.h"
+#include "framework/serve/view_picture.h"
 
 namespace aftershade::serve {
 
@@ -27,14 +28,15 @@ struct PictureRequest {
     std::shared_ptr<const BoundText> look;
     int frame = 0;
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
-    std::string view = "final";  ///< or before, tap:STEP.TEXTURE, role:NAME, truth:NAME, difference:NAME
+    std::string view = "final";  ///< a view of view_picture(), or truth:NAME, difference:NAME
     double exposure_ev = 0;
     bool continues = false;  ///< history continues where the frame before this one was drawn last
 };
 
 struct MadePicture {
     std::string png;
-    std::string times;  ///< JSON, one line
+    std::string times;       ///< JSON, one line
+    bool has_fault = false;  ///< the picture is the capture's
 };
 
 /// [the context's thread]
@@ -49,6 +51,9 @@ public:
     const gpu::ContextInfo& gl() const { return context_.info(); }
     /// Throws Error as `run` does.
     MadePicture make(const PictureRequest& request);
+    /// As make(). Where the capture lacks what a step takes from it, the final picture is that of the
+    /// capture, and its times have "fault": {"message", "step"}.
+    MadePicture make_or_show_capture(const PictureRequest& request);
     CaptureHeader header_of(int frame) const;
     /// A look's text with the middle of the picture, where it focuses on that, replaced by the nearest place
     /// that shows a surface: the middle may be sky.
@@ -87,7 +92,8 @@ private:
     };
 
     Scaled& draw(const PictureRequest& request);
-    void adopt(Scaled& scaled, const PictureRequest& request);
+    void adopt(Scaled& scaled, const PictureRequest& request, Pipeline pipeline);
+    std::string step_at_fault(const PictureRequest& request);
     bool load(Scaled& scaled, const PictureRequest& request);
     /// What decides which frame's images a step has besides those of the capture.
     enum class Start { same_frame, shot, next_frame };
@@ -95,8 +101,9 @@ private:
     bool is_next(const Scaled& scaled, int frame) const;
     /// What the steps make of `color`, at full size.
     const Image& made_color(const PictureRequest& request);
-    Image difference(const PictureRequest& request, const std::string& truth);
-    Image picture(const Scaled& scaled, const PictureRequest& request) const;
+    ShownView difference(const PictureRequest& request, const std::string& truth);
+    ShownView picture(const Scaled& scaled, const PictureRequest& request) const;
+    ShownView shown(const Scaled& scaled, const PictureRequest& request);
     const Capture& whole_capture(int frame);
     const FrameObjects& frame_objects(int frame);
     const Capture& truth(int frame, const std::string& name);

@@ -76,6 +76,7 @@ std::unique_ptr<PictureQueue::Task> PictureQueue::next() {
 
 void PictureQueue::note(const DrawRequest& request, const Response& response) {
     if (response.status != 200 || request.kind != DrawRequest::Kind::picture || request.scale != 1) return;
+    if (response.headers.contains(kFaultHeader)) return;
     listener_.drawn(request);
     if (request.view != "final") return;
     const std::lock_guard lock(mutex_);

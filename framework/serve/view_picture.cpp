@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "framework/base/error.h"
@@ -51,8 +53,7 @@ Image light_picture(Image color, const View& view) {
                            header.display_window);
 }
 
-Image false_color_picture(const std::string& role, const Image& image, const CaptureHeader& header) {
-    const FalseColor colors(role, image, header.primaries);
+Image painted(const FalseColor& colors, const Image& image, const CaptureHeader& header) {
     Image picture(image.width(), image.height(), 4);
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
@@ -63,6 +64,19 @@ Image false_color_picture(const std::string& role, const Image& image, const Cap
     const Window& data = header.data_window;
     if (image.width() != data.width() || image.height() != data.height()) return picture;
     return cropped_display(picture, data, header.display_window);
+}
+
+ShownView false_color_view(const std::string& role, const Image& image, const CaptureHeader& header) {
+    const FalseColor colors(role, image, header.primaries);
+    return {painted(colors, image, header), legend_json(colors)};
+}
+
+/// "#440154", as pages write colours.
+std::string page_color(const DisplayColor& color) {
+    std::string text = "#";
+    for (const float channel : color)
+        text += fmt::format("{:02x}", std::lround(std::clamp(channel, 0.0f, 1.0f) * 255));
+    return text;
 }
 
 const Image* find_image(const View& view, const std::string& role) {
@@ -146,6 +160,28 @@ bool is_inside(const Image& image, std::pair<int, int> place) {
 
 }  // namespace
 
+Json legend_json(const FalseColor& colors) {
+    constexpr int kColors = 12;
+    Json legend = {
+        {"words", colors.label()}, {"drawing", "none"}, {"colors", Json::array()}, {"faults", Json::array()}};
+    if (colors.legend() == Legend::ramp) {
+        legend["drawing"] = "ramp";
+        for (int i = 0; i < kColors; ++i)
+            legend["colors"].push_back(page_color(ramp_color(1 - float(i) / (kColors - 1))));
+    } else if (colors.legend() == Legend::wheel) {
+        legend["drawing"] = "wheel";
+        for (int i = 0; i < kColors; ++i) {
+            const float turn = 2 * std::numbers::pi_v<float> * float(i) / kColors;
+            legend["colors"].push_back(page_color(wheel_color(std::cos(turn), std::sin(turn))));
+        }
+    }
+    for (const PixelFault fault : kPixelFaults)
+        if (colors.fault_count(fault) > 0)
+            legend["faults"].push_back(
+                {{"name", pixel_fault_name(fault)}, {"color", page_color(pixel_fault_color(fault))}});
+    return legend;
+}
+
 std::pair<int, int> place_of_pixel(const CaptureHeader& header, int x, int y) {
     return {x + header.display_window.min_x - header.data_window.min_x,
             y + header.display_window.min_y - header.data_window.min_y};
@@ -204,32 +240,32 @@ bool is_false_color(const std::string& name) {
     return !role.empty() && role != kDisplayRole && !is_picture(role);
 }
 
-Image view_picture(const View& view) {
-    if (view.name == "final") return final_picture(view);
+ShownView view_picture(const View& view) {
+    if (view.name == "final" || view.name.starts_with(kBeforeView)) return {final_picture(view), {}};
     if (view.name == "before") {
         const auto color = view.capture.images.find(kColorRole);
         if (color == view.capture.images.end())
             throw Error(ErrorKind::capture, "the capture has no role 'color'");
-        return light_picture(color->second, view);
+        return {light_picture(color->second, view), {}};
     }
     const std::string what = view.name.substr(std::min(view.name.find(':') + 1, view.name.size()));
     if (view.name.starts_with(kSharpView)) {
         const auto coc = view.result.taps.find(what + "." + kCoc);
         if (coc == view.result.taps.end())
             throw Error(ErrorKind::usage, "no pass made the circles of confusion of '" + what + "'");
-        return sharpness_picture(coc->second, view);
+        return {sharpness_picture(coc->second, view), {}};
     }
     if (view.name.starts_with("tap:")) {
         const auto tap = view.result.taps.find(what);
         if (tap == view.result.taps.end())
             throw Error(ErrorKind::usage, "no pass made the tap '" + what + "'");
-        return false_color_picture(std::string(kDataRole), tap->second, view.capture.header);
+        return false_color_view(std::string(kDataRole), tap->second, view.capture.header);
     }
     const Image* image = view.name.starts_with("role:") ? find_image(view, what) : nullptr;
     if (!image) throw Error(ErrorKind::usage, "there is no view '" + view.name + "' of this frame");
-    if (is_picture(what)) return light_picture(*image, view);
-    if (what == kDisplayRole) return final_picture(view);
-    return false_color_picture(what, *image, view.capture.header);
+    if (is_picture(what)) return {light_picture(*image, view), {}};
+    if (what == kDisplayRole) return {final_picture(view), {}};
+    return false_color_view(what, *image, view.capture.header);
 }
 
 Json probe_json(const Capture& capture, int x, int y) {

@@ -7,9 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "framework/capture/capture.h"
+#include "framework/image/false_color.h"
 #include "framework/image/image.h"
 #include "framework/look/pipeline.h"
 #include "framework/render/renderer.h"
@@ -18,17 +19,28 @@ namespace aftershade::serve {
 
 /// What a lens draws sharp, and the limits: "sharp:STEP".
 inline constexpr std::string_view kSharpView = "sharp:";
+/// The final picture of the steps before one: "before:STEP".
+inline constexpr std::string_view kBeforeView = "before:";
 
 /// [refers to what the caller keeps]
 struct View {
-    const std::string& name;  ///< final, before, tap:STEP.TEXTURE, sharp:STEP, role:NAME
+    const std::string& name;  ///< final, before, before:STEP, tap:STEP.TEXTURE, sharp:STEP, role:NAME
     double exposure_ev = 0;
     const FrameResult& result;
     const Capture& capture;
 };
 
-/// Display-referred values over the display window. Throws Error(ErrorKind::usage) for what is not there.
-Image view_picture(const View& view);
+struct ShownView {
+    Image picture;                  ///< display-referred values over the display window
+    nlohmann::ordered_json legend;  ///< of false colours, as legend_json() gives it; null for a picture
+};
+/// Throws Error(ErrorKind::usage) for what is not there. For "before:STEP" the result is that of the steps
+/// before it.
+ShownView view_picture(const View& view);
+
+/// {"words": [range and unit, how they are shown], "drawing": "ramp", "wheel" or "none", "colors":
+/// ["#440154"] from near to far or around the wheel from right over down, "faults": [{"name", "color"}]}
+nlohmann::ordered_json legend_json(const FalseColor& colors);
 
 /// Whether a view's colours stand for numbers, and are not those of a picture.
 bool is_false_color(const std::string& name);

@@ -121,6 +121,7 @@ TEST_F(Schemas, TakeEveryFormOfAValue) {
     std::vector<Document> documents;
     for (const char* value :
          {"2", "\"2.4 m\"", "\"240cm\"", R"({"keys": {"1": 2, "24": "3 m"}, "interpolation": "step"})",
+          R"({"keys": {"1": {"value": 2, "interpolation": [0.4, 0, 0.6, 1]}, "24": {"value": "3 m"}}})",
           R"({"var": "focus"})", R"({"from": "camera.far"})", R"({"from": "depth", "uv": [0.5, 0.5]})",
           R"({"from": "depth", "object": "Wheel"})"})
         documents.push_back({"look", value,
@@ -188,6 +189,10 @@ std::vector<std::pair<std::string, std::string>> broken_documents() {
         look(step(R"("params": {"taps": 2.5})")),
         look(step(R"("params": {"focus_distance": {"keys": {}}})")),
         look(step(R"("params": {"focus_distance": {"keys": {"one": 2}}})")),
+        look(step(R"("params": {"focus_distance": {"keys": {"1": 2}, "interpolation": "cubic"}})")),
+        look(step(
+            R"("params": {"focus_distance": {"keys": {"1": {"value": 2, "interpolation": [0, 0, 2, 1]}}}})")),
+        look(step(R"("params": {"focus_distance": {"keys": {"1": {"interpolation": "step"}}}})")),
         look(step(R"("params": {"shape": {"keys": {"1": "square"}}})")),
         look(step(R"("params": {"focus_distance": {"from": "camera.f_number"}})")),
         look(step(R"("params": {"f_number": {"from": "depth", "uv": [0.5, 0.5]}})")),

@@ -116,6 +116,24 @@ TEST(HostApi, ArraysOfPixelsThatAreNotSquareGiveTheBitsOfFiles) {
         EXPECT_THROW(arrays.set_pixel_aspect(aspect), Error) << aspect;
 }
 
+TEST(HostApi, TakesKeysWithAnEaseOfTheirOwn) {
+    Host host(on_software());
+    Look look = host.parse_look(R"({"aftershade": 1, "steps": [{"effect": "color_grade"}]})");
+    Capture capture = small_capture();
+    capture.set_frame(12);
+    const auto drawn = [&](const Value& exposure) {
+        look.set("color_grade.exposure", exposure);
+        return look.render(capture);
+    };
+    const Result held = drawn(Json{
+        R"({"keys": {"1": {"value": 2, "interpolation": "step"}, "23": 4}, "interpolation": "smooth"})"});
+    EXPECT_TRUE(same_bits(held.image("color"), drawn(2.0).image("color")));
+    const Result eased =
+        drawn(Json{R"({"keys": {"1": {"value": 2, "interpolation": [0.5, 0, 0.5, 1]}, "23": 4}})"});
+    EXPECT_TRUE(same_bits(eased.image("color"), drawn(3.0).image("color")))
+        << "half-way, by the curve's symmetry";
+}
+
 TEST(HostApi, WritesOverNoDocumentOfItsOwnLookAndKnowsNoOtherHosts) {
     const TemporaryFolder folder;
     const std::string look = R"({"aftershade": 1, "steps": [{"effect": "vignette"}]})";

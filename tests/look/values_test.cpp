@@ -64,6 +64,43 @@ TEST_F(ValueForms, KeysAreLinearBetweenFramesAndConstantBeyond) {
     EXPECT_DOUBLE_EQ(reach(smooth, scene(12)), 2 + 2 * (3 * 0.04 - 2 * 0.008));
 }
 
+TEST_F(ValueForms, AKeyMaySayHowItsValueGoesToTheNext) {
+    const std::string keys = R"({ "keys": { "10": { "value": "2 m", "interpolation": "step" },
+        "20": { "value": 4, "interpolation": [0.42, 0, 0.58, 1] }, "30": 8, "40": { "value": 4 }, "50": 0.5 },
+        "interpolation": "smooth" })";
+    const double eased = 3 * 0.04 - 2 * 0.008;
+    for (const auto& [frame, expected] : {std::pair(10, 2.0),
+                                          {19, 2.0},
+                                          {20, 4.0},
+                                          {25, 6.0},
+                                          {32, 8 - 4 * eased},
+                                          {42, 4 - 3.5 * eased},
+                                          {60, 0.5}})
+        EXPECT_NEAR(reach(keys, scene(frame)), expected, 1e-9) << frame;
+    EXPECT_LT(reach(keys, scene(22)), 4 + 4 * 0.2) << "slowly at first";
+    const std::string rack = R"({ "keys": { "10": { "value": { "from": "depth", "object": 2 },
+        "interpolation": "step" }, "20": { "from": "depth", "uv": [0.1, 0.9] } } })";
+    EXPECT_NEAR(reach(rack, scene(19)), 2.5, 1e-6);
+    EXPECT_NEAR(reach(rack, scene(20)), 9, 1e-6);
+    for (const std::string& value : {keys, rack}) {
+        const Bound bound(effects_,
+                          look_of(R"({ "effect": "shown", "params": { "reach": )" + value + " } }"));
+        const std::string text = format_source(bound.pipeline().steps.at(0).values.at("reach"));
+        EXPECT_NEAR(reach(text, scene(22)), reach(value, scene(22)), 1e-12) << text;
+    }
+}
+
+TEST_F(ValueForms, OfAKeyAreErrorsWhereTheyStand) {
+    const auto says = [&](const std::string& key, const std::string& words) {
+        const std::string found = faults(R"({ "keys": { "1": )" + key + " } }");
+        EXPECT_NE(found.find(words), std::string::npos) << found;
+    };
+    says(R"({ "value": 500 })", "500 m is above the maximum 100 m");
+    says(R"({ "value": 5, "interpolation": "cubic" })", "or the handles of a curve");
+    says(R"({ "value": 5, "ease": "step" })", "shown.reach has no key 'ease'");
+    says(R"({ "value": { "value": 5 } })", "shown.reach");
+}
+
 TEST_F(ValueForms, VariablesStandForAnyValue) {
     EXPECT_EQ(reach(R"({ "var": "far" })", scene(1), R"("vars": { "far": "700 cm" }, )"), 7);
     EXPECT_EQ(

@@ -1,11 +1,10 @@
-// An artist's way through the page: from a frame alone to a saved look, without a line of JSON.
+// An artist's ways through the page: from a frame alone to a saved look, without a line of JSON.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import {
   copyFileSync,
   existsSync,
   mkdirSync,
-  mkdtempSync,
   readdirSync,
   readFileSync,
   rmSync,
@@ -13,78 +12,30 @@ import {
   symlinkSync,
   writeFileSync,
 } from "node:fs";
-import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
-import { after, before, test } from "node:test";
+import { join } from "node:path";
 
-import { axeSource, openBrowser } from "./browser.mjs";
-import { drawn, openServed, startServer } from "./served.mjs";
+import { drawn } from "./served.mjs";
 import { program } from "./suite.mjs";
-
-const root = resolve(import.meta.dirname, "../.."),
-  scene = join(root, "scenes/suzanne"),
-  capture = join(scene, "capture.json"), // of Blender: 480 x 270 px, frames 3 and 4
-  environment = { ...process.env, AFTERSHADE_BACKEND: "software" },
-  shots = process.env.AFTERSHADE_PAGE_SHOTS; // a folder for screenshots to be looked at
-
-let browser;
-before(async () => (browser = await openBrowser()));
-after(() => browser?.close());
-
-/** A page over a capture in a folder of its own; the page must not complain, unless `mayFail`. */
-function walk(name, work, { words = [capture], mayFail = false, ...options } = {}) {
-  test(name, { timeout: 400_000 }, async () => {
-    const folder = mkdtempSync(join(tmpdir(), "aftershade-artist-"));
-    let server, page;
-    try {
-      server = await startServer(typeof words === "function" ? words(folder) : words, {
-        env: environment,
-        cwd: folder,
-      });
-      page = await openServed(browser, server.address, options);
-      await drawn(page);
-      await work(page, folder);
-      if (!mayFail) assert.deepEqual(page.faults, []);
-    } finally {
-      await page?.context().close();
-      await server?.end();
-      rmSync(folder, { recursive: true, force: true });
-    }
-  });
-}
-const canProbeVideo = () => ["ffmpeg", "ffprobe"].every((program) => spawnSync(program, ["-version"]).status === 0);
-const state = (page) => page.evaluate(() => window.aftershade.store.state);
-const steps = async (page) => (await state(page)).steps.map(({ effect }) => effect);
-const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`) });
-const allDrawn = (page, list, least) =>
-  page.waitForFunction(
-    ([selector, count]) => document.querySelectorAll(`${selector} canvas[data-drawn]`).length >= count,
-    [list, least],
-  );
-async function axe(page, place) {
-  if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(readFileSync(axeSource, "utf8"));
-  const { violations } = await page.evaluate(() => window.axe.run({ resultTypes: ["violations"] }));
-  assert.deepEqual(
-    violations.map(({ id, nodes }) => `${place}: ${id}: ${nodes.length} x ${nodes[0].html.slice(0, 160)}`),
-    [],
-  );
-}
-
-/** RGBA of a PNG file. */
-async function pixelsOf(file) {
-  const blank = await browser.newPage();
-  const bytes = await blank.evaluate(async (text) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${text}`;
-    await image.decode();
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
-    canvas.getContext("2d").drawImage(image, 0, 0);
-    return [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data];
-  }, readFileSync(file).toString("base64"));
-  await blank.close();
-  return bytes;
-}
+import {
+  allDrawn,
+  axe,
+  canProbeVideo,
+  capture,
+  clickAt,
+  edit,
+  environment,
+  opened,
+  pixelsOf,
+  root,
+  scene,
+  shot,
+  state,
+  steps,
+  until,
+  walk,
+  walkBlender,
+  SUZANNE,
+} from "./walks.mjs";
 
 for (const [colorScheme, width, height] of [
   ["dark", 1440, 900],
@@ -227,54 +178,6 @@ walk(
 );
 
 // ---- names ----
-
-const blender = join(process.env.AFTERSHADE_CAPTURES ?? "/nowhere", "blender-versions/5.2.3"),
-  isThere = existsSync(blender);
-/** Two frames of Blender 5.2, with Cryptomattes of objects and of materials. */
-const walkBlender = (name, work, options) =>
-  isThere
-    ? walk(name, work, {
-        words: (folder) => {
-          for (const frame of [3, 4])
-            copyFileSync(join(blender, `multi_000${frame}.exr`), join(folder, `multi_000${frame}.exr`));
-          return ["multi_####.exr"];
-        },
-        ...options,
-      })
-    : test(name, { skip: `no ${blender}; set AFTERSHADE_CAPTURES` }, () => {});
-/** Clicks a place of the picture, in its pixels. */
-async function clickAt(page, x, y) {
-  const place = await page.evaluate(
-    ([px, py]) => {
-      const { picture, canvas } = window.aftershade.viewer,
-        box = canvas.getBoundingClientRect(),
-        [left, top] = picture.corner;
-      return [
-        box.left + (left + (px + 0.5) * picture.zoom) / devicePixelRatio,
-        box.top + (top + (py + 0.5) * picture.zoom) / devicePixelRatio,
-      ];
-    },
-    [x, y],
-  );
-  await page.mouse.click(...place);
-}
-const edit = (page, ...edits) => page.evaluate((list) => window.aftershade.store.edit(list), edits);
-async function opened(page, name) {
-  const card = page.locator(`.step[data-step="${name}"]`);
-  if ((await card.locator(".opener").getAttribute("aria-expanded")) === "false") await card.locator(".opener").click();
-  return card;
-}
-/** Waits until the parameter of the first step is this. */
-const until = (page, param, value) =>
-  page.waitForFunction(
-    ([name, wanted]) => {
-      const sorted = (one) =>
-        JSON.stringify(one, (_, v) => (v?.constructor === Object ? Object.fromEntries(Object.entries(v).sort()) : v));
-      return sorted(window.aftershade.store.state.steps[0].params[name]?.value) === sorted(wanted);
-    },
-    [param, value],
-  );
-const SUZANNE = [240, 120];
 
 walkBlender("shows and writes the names of Blender's objects and materials", async (page) => {
   await edit(page, { op: "add", at: 0, effect: "vignette" }, { op: "add", at: 1, effect: "sss_gaussian" });
@@ -503,7 +406,10 @@ for (const [colorScheme, width, height] of [
         assert.equal(probed.stdout.trim(), "h264,480,270,2");
       }
       assert.deepEqual(readdirSync(join(folder, "film")), ["film_0003.png", "film_0004.png"]);
-      assert.deepEqual(readdirSync(folder).filter((file) => file.startsWith(".")), []);
+      assert.deepEqual(
+        readdirSync(folder).filter((file) => file.startsWith(".")),
+        [],
+      );
       await name.press("Enter");
       await dialog.getByText("is there already; choose another name").waitFor();
       await name.fill("other");
@@ -517,7 +423,11 @@ for (const [colorScheme, width, height] of [
 
 // ---- hands ----
 
-const typedIn = (row, text) => row.getByRole("textbox").fill(text).then(() => row.getByRole("textbox").press("Enter"));
+const typedIn = (row, text) =>
+  row
+    .getByRole("textbox")
+    .fill(text)
+    .then(() => row.getByRole("textbox").press("Enter"));
 
 walk("adds up what is typed, and changes a number by a drag on it", async (page) => {
   await edit(page, { op: "add", at: 0, effect: "dof" });
@@ -544,7 +454,8 @@ walk("adds up what is typed, and changes a number by a drag on it", async (page)
   await page.mouse.up();
   // A tenth of the slider, whose ends are a factor of 500 apart.
   await page.waitForFunction(
-    (wanted) => Math.abs(parseFloat(window.aftershade.store.state.steps[0].params.focus_distance.value) / wanted - 1) < 0.05,
+    (wanted) =>
+      Math.abs(parseFloat(window.aftershade.store.state.steps[0].params.focus_distance.value) / wanted - 1) < 0.05,
     6 * 500 ** 0.1,
   );
   await page.keyboard.press("Control+z");
@@ -582,7 +493,11 @@ walk("explains the value with the focus, not the one under the pointer", async (
   assert.match(await help.innerText(), /^Focal length divided by/);
   await card.locator('[data-param="focus_distance"]').getByRole("textbox").focus();
   await card.locator('[data-param="f_number"]').hover();
-  assert.match(await help.innerText(), /^Distance along the view axis/);
+  assert.match(await help.innerText(), /^Distance along the view axis.*Now the effect's default/s);
+  await card.locator('[data-param="focus_distance"]').getByRole("textbox").fill("5");
+  await page.keyboard.press("Enter");
+  await until(page, "focus_distance", 5);
+  assert.match(await help.innerText(), /^Distance along the view axis.*Now set in the look/s);
 });
 
 walk("asks before a look with faults is saved", async (page, folder) => {
@@ -635,9 +550,7 @@ for (const [colorScheme, width, height] of [
       await edit(page, { op: "add", at: 0, effect: "dof" });
       const card = await opened(page, "dof"),
         names = (place) => card.locator(place).evaluateAll((rows) => rows.map(({ dataset }) => dataset.param));
-      const { params } = JSON.parse(
-        spawnSync(program, ["describe", "dof", "--json"], { encoding: "utf8" }).stdout,
-      );
+      const { params } = JSON.parse(spawnSync(program, ["describe", "dof", "--json"], { encoding: "utf8" }).stdout);
       const wanted = (fits) => Object.keys(params).filter((name) => fits(params[name]));
       await page.getByRole("group", { name: "Aperture" }).waitFor();
       assert.deepEqual(
@@ -667,68 +580,15 @@ for (const [colorScheme, width, height] of [
     { viewport: { width, height }, colorScheme },
   );
 
-// ---- the whole way ----
-
-walkBlender("goes from a frame of Blender to a film by hand, without a line of JSON", async (page, folder) => {
-  // A look to start from, focused on Suzanne by a click and on the cube a frame later.
-  await page.locator(".start", { hasText: "Portrait" }).click();
-  await page.waitForFunction(() => window.aftershade.store.state.steps.length > 1);
-  assert.equal((await steps(page))[0], "dof");
-  const row = (await opened(page, "dof")).locator('[data-param="focus_distance"]');
-  await row.getByRole("button", { name: /^Pick/ }).click();
-  await clickAt(page, ...SUZANNE);
-  await until(page, "focus_distance", { from: "depth", object: "Suzanne" });
-  await row.getByRole("button", { name: /^Key/ }).click();
-  await page.keyboard.press(".");
-  await row.getByRole("button", { name: /^Choose the object/ }).click();
-  await page.keyboard.type("cube");
-  await page.locator("#found-objects .name", { hasText: "Cube" }).first().waitFor();
-  await page.keyboard.press("Enter");
-  await page.waitForFunction(() => Object.keys(window.aftershade.store.state.steps[0].params.focus_distance.value.keys).length === 2);
-  await shot(page, "walk_rack");
-  // A darker frame, but not over Suzanne.
-  const vignette = (await steps(page)).indexOf("vignette");
-  assert.ok(vignette > 0);
-  const card = await opened(page, "vignette");
-  await card.getByLabel("Mask by").selectOption("object");
-  await card.getByRole("button", { name: "Pick the mask's object" }).click();
-  await clickAt(page, ...SUZANNE);
-  await page.waitForFunction((at) => window.aftershade.store.state.steps[at].mask?.object === "Suzanne", vignette);
-  await card.getByLabel("Invert the mask").check();
-  await page.waitForFunction((at) => window.aftershade.store.state.steps[at].mask?.invert === true, vignette);
-  await shot(page, "walk_mask");
-  // Saved, then exported.
-  await page.keyboard.press("Control+s");
-  await page.keyboard.type("shot");
-  await page.keyboard.press("Enter");
-  await page.locator(".save-dialog").waitFor({ state: "hidden" });
-  await page.keyboard.press("x");
-  const dialog = page.getByRole("dialog", { name: "Export" });
-  for (const format of canProbeVideo() ? ["png", "mp4"] : ["png"]) {
-    await dialog.getByLabel("Format").selectOption(format);
-    await dialog.getByLabel("Name of the export").press("Enter");
-    await dialog.getByText(`Wrote ${join(folder, format === "png" ? "shot" : "shot.mp4")}`, { exact: true }).waitFor();
-  }
-  await axe(page, "walk");
-  // What the page wrote is what `run` draws with the saved look, to the bit.
-  const run = spawnSync(program, ["run", "shot.json", "multi_####.exr", "-o", "own_####.png", "--no-journal"], {
-    cwd: folder,
-    env: environment,
-    encoding: "utf8",
-  });
-  assert.equal(run.status, 0, run.stderr);
-  for (const frame of ["0003", "0004"])
-    assert.ok(
-      readFileSync(join(folder, `shot/shot_${frame}.png`)).equals(readFileSync(join(folder, `own_${frame}.png`))),
-      frame,
-    );
-});
+// ---- the list ----
 
 walk("folds open steps while one of them is dragged", async (page) => {
-  for (const [at, effect] of ["dof", "vignette", "view_transform"].entries()) await edit(page, { op: "add", at, effect });
+  for (const [at, effect] of ["dof", "vignette", "view_transform"].entries())
+    await edit(page, { op: "add", at, effect });
   for (const name of ["dof", "vignette"]) await opened(page, name);
   const grip = await page.locator('.step[data-step="dof"] .grip').boundingBox(),
-    shown = () => page.locator(".step .body").evaluateAll((nodes) => nodes.filter((node) => node.checkVisibility()).length);
+    shown = () =>
+      page.locator(".step .body").evaluateAll((nodes) => nodes.filter((node) => node.checkVisibility()).length);
   assert.equal(await shown(), 2);
   await page.mouse.move(grip.x + 8, grip.y + 8);
   await page.mouse.down();

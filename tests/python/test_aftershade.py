@@ -88,6 +88,15 @@ def test_images_share_the_memory_of_results_and_outlive_them(host):
     assert np.array_equal(color, kept)
 
 
+def test_a_key_may_have_an_interpolation_of_its_own(host):
+    look = aftershade.Look(BLUR, host=host)
+    arrays = frame_arrays()
+    look["bokeh.f_number"] = {"keys": {"-100": {"value": 4, "interpolation": "step"}, "100": 0.5}}
+    held = look.render(arrays)["color"]
+    look["bokeh.f_number"] = 4
+    assert np.array_equal(look.render(arrays)["color"], held)
+
+
 def test_arrays_of_any_layout_give_the_same_pixels(host):
     arrays = frame_arrays()
     look = aftershade.Look(BLUR, host=host)
@@ -296,6 +305,11 @@ MISUSES = {
     "unknown parameter": (lambda host: set_param(host, "bokeh.f_numbr", 1), aftershade.UsageError, "f_numbr"),
     "out of range": (lambda host: set_param(host, "bokeh.f_number", -1), aftershade.UsageError, "f_number"),
     "wrong type": (lambda host: set_param(host, "bokeh.f_number", [1, 2]), aftershade.UsageError, "f_number"),
+    "handle beyond the key": (
+        lambda host: set_param(host, "bokeh.f_number", {"keys": {"1": {"value": 4, "interpolation": [0, 0, 2, 1]}}}),
+        aftershade.UsageError,
+        "handles of a curve",
+    ),
     "no form in JSON": (lambda host: set_param(host, "bokeh.f_number", object()), TypeError, "object"),
     "missing role": (
         lambda host: aftershade.Look(BLUR, host=host).render({"color": frame_arrays()["color"]}),

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <mutex>
 #include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -52,6 +53,54 @@ TEST(LookEdits, ChangeTheBytesOfTheValueAlone) {
 
 TEST(LookEdits, LeaveAnEqualValueInItsAuthorsSpelling) {
     EXPECT_EQ(edited(kLook, {{"op", "set"}, {"step", 0}, {"param", "f_number"}, {"value", 2.8}}), kLook);
+}
+
+TEST(LookEdits, ChangeAnObjectOfSeveralLinesMemberByMember) {
+    const std::string text = R"({ "aftershade": 1, "steps": [
+  { "effect": "dof", "params": { "focus_distance": {
+      "keys": {
+        "1": "2 m", // Ball
+        "24": "5.0 m" // Suzanne
+      },
+      "interpolation": "smooth" // gently
+  } } } ] }
+)";
+    const auto with = [&](const char* value) {
+        return edited(
+            text, {{"op", "set"}, {"step", 0}, {"param", "focus_distance"}, {"value", Json::parse(value)}});
+    };
+    const auto replaced = [&](const std::string& before, const std::string& after) {
+        std::string expected = text;
+        return expected.replace(expected.find(before), before.size(), after);
+    };
+    EXPECT_EQ(with(R"({"keys": {"1": "3 m", "24": "5.0 m"}, "interpolation": "smooth"})"),
+              replaced("\"2 m\"", "\"3 m\""));
+    EXPECT_EQ(with(R"({"keys": {"1": "2 m", "12": 4, "24": "5.0 m"}, "interpolation": "smooth"})"),
+              replaced("\"24\":", "\"12\": 4,\n        \"24\":"))
+        << "in the order of the frames";
+    EXPECT_EQ(with(R"({"keys": {"1": "2 m"}, "interpolation": "smooth"})"),
+              replaced("\"2 m\", // Ball\n        \"24\": \"5.0 m\" // Suzanne\n", "\"2 m\" // Ball\n"));
+    const std::string eased = with(
+        R"({"keys": {"1": {"value": "2 m", "interpolation": "step"}, "24": "5.0 m"}, "interpolation": "smooth"})");
+    EXPECT_EQ(eased, replaced("\"2 m\"", R"({ "value": "2 m", "interpolation": "step" })"));
+    const std::string moved = with(R"({"keys": {"30": "5.0 m"}})");
+    EXPECT_EQ(read(moved)["steps"][0]["params"]["focus_distance"],
+              Json::parse(R"({"keys": {"30": "5.0 m"}})"));
+}
+
+TEST(LookEdits, GiveAValueThatIsTooLongForALineALineForEachPart) {
+    const std::string text = "{ \"aftershade\": 1,\n  \"steps\": [\n    { \"effect\": \"dof\" }\n  ]\n}\n";
+    const Json keys = Json::parse(R"({ "keys": {
+        "1": { "value": { "from": "depth", "object": "Suzanne" }, "interpolation": [0.4, 0, 0.6, 1] },
+        "24": { "from": "depth", "object": "Ball" } }, "interpolation": "smooth" })");
+    const std::string set =
+        edited(text, {{"op", "set"}, {"step", 0}, {"param", "focus_distance"}, {"value", keys}});
+    EXPECT_EQ(read(set)["steps"][0]["params"]["focus_distance"], keys);
+    EXPECT_NE(set.find("\n          \"24\": { \"from\": \"depth\", \"object\": \"Ball\" }\n"),
+              std::string::npos)
+        << set;
+    std::istringstream lines(set);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120) << line;
 }
 
 TEST(LookEdits, PutANewKeyAfterTheLastOneInItsOwnForm) {
