@@ -48,8 +48,9 @@ class GitlabJob:
         self.job = known(next(iter(recipe.values())), JOB_KEYS, "job")
         self.cached = known(self.job.get("cache", {}), ["key", "paths"], "cache")
         self.artifacts = known(self.job.get("artifacts", {}), ARTIFACT_KEYS, "artifacts")
-        if not re.fullmatch("debian:1[23]", self.job["image"]):
-            raise Unknown(f"image: {self.job['image']}: only debian:12 and debian:13 are made")
+        image = known(self.job["image"], ["name", "entrypoint"], "image")
+        if not re.fullmatch("debian:1[23]", image["name"]) or image["entrypoint"] != [""]:
+            raise Unknown(f"image: {image}: only debian:12 and debian:13 are made")
         self.url, self.commit, self.store = url, commit, store
         workspace = "/builds/user/user"
         own = {"CI_PROJECT_DIR": workspace, "CI_JOB_TOKEN": "secret"}
