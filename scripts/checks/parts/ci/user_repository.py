@@ -69,13 +69,13 @@ def move_to_lfs(file, objects):
 
 
 def write_hostile(folder, suite):
-    git(folder, "checkout", "--quiet", "same")
+    git(folder, "-c", "advice.detachedHead=false", "checkout", "--quiet", "same")
     (folder / "golden").rename(folder / HOSTILE)
     look = "looks/$(touch PWNED).json"
     (folder / "looks/vignette.json").rename(folder / look)
     write_json(folder / HOSTILE / "golden.json", {**suite, "cases": [{**suite["cases"][0], "look": f"../{look}"}, *suite["cases"][1:]]})
     commit(folder, "hostile", "$(touch PWNED)")
-    git(folder, "checkout", "--quiet", "same")
+    git(folder, "-c", "advice.detachedHead=false", "checkout", "--quiet", "same")
     (folder / "shots/$(touch PWNED)\n::error::y.exr").write_text(pointer("0" * 64, 10))
     commit(folder, "absent", "A file of LFS that is not there")
 
