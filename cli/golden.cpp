@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 void print_head(const GoldenReportContext& context) {
     const GoldenEnvironment& environment = context.options.environment;
-    std::cerr << fmt::format("{}: {}, {} at a time, {}: {}, {}, {}\n", context.suite->argument,
+    std::cerr << fmt::format("{}: {}, {} at a time, {}: {}, {}, {}\n", printable(context.suite->argument),
                              counted(context.suite->cases.size(), "case"), context.options.jobs,
                              environment.backend, environment.renderer, environment.version, environment.cpu);
 }

@@ -1,11 +1,9 @@
 #include "cli/golden_options.h"
 
-#include <fmt/chrono.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -38,23 +36,12 @@ gpu::GlChoice gl_of(const GoldenOptions& options, int part) {
     }
 }
 
-/// Why a name, glob or tag stands for no case; "" where it stands for one.
-std::string fault_of_filter(const GoldenSuite& suite, const std::string& filter) {
-    std::vector<std::string> words;
-    for (const GoldenCase& test : suite.cases) {
-        if (fits_filter(test, {filter})) return "";
-        words.push_back(test.name);
-        words.insert(words.end(), test.tags.begin(), test.tags.end());
-    }
-    return "matches no case's name or tag" + did_you_mean(filter, words);
-}
-
 void check_words(const GoldenOptions& options, const GoldenSuite& suite, Diagnostics& diagnostics) {
     for (const std::string& path : options.effect_paths)
         if (!fs::is_directory(path)) diagnostics.error({"--effect-path " + path}, "no such folder");
     for (const std::string& filter : options.filters)
-        if (const std::string why = fault_of_filter(suite, filter); !why.empty())
-            diagnostics.error({options.filter_place + filter}, why);
+        if (std::ranges::none_of(suite.cases, [&](const auto& test) { return fits_filter(test, {filter}); }))
+            diagnostics.error({options.filter_place + filter}, no_case_fits(suite, filter));
     if (!options.report.empty() && fs::exists(options.report) && !fs::is_directory(options.report))
         diagnostics.error({"--report " + options.report}, "is not a folder");
 }
@@ -135,7 +122,7 @@ GoldenApproveOptions approve_options_of(const GoldenSetup& setup, const GoldenOp
     approve.run = setup.context.options;
     approve.command = std::move(command);
     approve.approver = approver_of(options, setup.suite.folder());
-    approve.approved = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
+    approve.approved = day_of_today();
     return approve;
 }
 

@@ -75,8 +75,7 @@ std::vector<GoldenDecision> resolve_decisions(const GoldenSuite& suite,
             resolved.back().test = test.name;
         }
         if (!fits)
-            diagnostics.error({"decision about '" + decision.test + "'"},
-                              "matches no case's name or tag; name a case of the suite");
+            diagnostics.error({"decision about '" + decision.test + "'"}, no_case_fits(suite, decision.test));
     }
     return resolved;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <list>
+#include <map>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -77,22 +78,30 @@ public:
 
     void take(GoldenCaseResult& result, const TracedCase& traced, CaseTracer& tracer) {
         const std::scoped_lock lock(mutex_);
-        refuse(result, traced.rendered.images);
+        // All of them before anything is staged: a fault of one keeps the case's goldens.
+        std::vector<Approved> approved;
+        for (const RenderedImage& image : traced.rendered.images)
+            approved.push_back(approved_images(result.test->goldens, image.name, options_.run.environment));
+        refuse(result, traced.rendered.images, approved);
         if (result.verdict != Verdict::same) return;
         std::error_code failure;
         fs::create_directories(result.test->goldens, failure);
         if (failure) throw Error(ErrorKind::output, result.test->goldens.string() + ": " + failure.message());
-        for (const RenderedImage& image : traced.rendered.images) {
+        for (std::size_t i = 0; i < approved.size(); ++i) {
+            const RenderedImage& image = traced.rendered.images[i];
             CaseOrigin origin = tracer.parts(*result.test, image.frame).origin;
             if (const auto steps = traced.steps.find(image.frame); steps != traced.steps.end())
                 origin.steps = steps->second;
-            take(*result.test, image, result.sources, std::move(origin));
+            take(*result.test, image, approved[i], result.sources, std::move(origin));
         }
     }
     /// The store first: what is there too many is in nobody's way, and what is missing would be lost.
     void commit(const std::atomic<bool>& interrupt) {
-        GoldenStore(suite_.store, suite_.folder(), options_.run.render.timeout)
-            .push(pushed_, to_push_.path(), interrupt);
+        const GoldenStore store(suite_.store, suite_.folder(), options_.run.render.timeout);
+        std::set<std::string> kept;
+        for (const auto& [digest, file] : kept_) kept.insert(digest);
+        for (const std::string& digest : store.lacking(kept, interrupt)) prepare_push(kept_.at(digest));
+        store.push(pushed_, to_push_.path(), interrupt);
         staging_.commit();
     }
 
@@ -104,24 +113,22 @@ private:
     }
 
     /// A failure of the case where something stands against one of its new images.
-    void refuse(GoldenCaseResult& result, const std::vector<RenderedImage>& images) const {
+    void refuse(GoldenCaseResult& result, const std::vector<RenderedImage>& images,
+                const std::vector<Approved>& approved) const {
         if (!options_.why_not) return;
-        for (const RenderedImage& image : images) {
-            const Approved approved =
-                approved_images(result.test->goldens, image.name, options_.run.environment);
-            if (find_equal(approved, image) != approved.end()) continue;
-            const std::string why = options_.why_not(*result.test, image, approved);
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            if (find_equal(approved[i], images[i]) != approved[i].end()) continue;
+            const std::string why = options_.why_not(*result.test, images[i], approved[i]);
             if (why.empty()) continue;
             result.verdict = Verdict::failure;
-            result.messages.push_back(image.name + ": " + why);
+            result.messages.push_back(images[i].name + ": " + why);
         }
     }
 
-    void take(const GoldenCase& test, const RenderedImage& image, const GoldenSources& sources,
-              CaseOrigin origin) {
-        const GoldenEnvironment& own = options_.run.environment;
-        const Approved approved = approved_images(test.goldens, image.name, own);
-        GoldenSidecar sidecar{own, options_.command, sources, "", "", "", std::move(origin)};
+    void take(const GoldenCase& test, const RenderedImage& image, const Approved& approved,
+              const GoldenSources& sources, CaseOrigin origin) {
+        GoldenSidecar sidecar{options_.run.environment, options_.command, sources, "", "", "",
+                              std::move(origin)};
         const auto equal = find_equal(approved, image);
         if (equal != approved.end()) {
             ++approval_.unchanged;
@@ -129,8 +136,9 @@ private:
             if (equal->sidecar_fault) {
                 approve(equal->file, equal->file, sidecar);
                 approval_.renewed.push_back(sidecar_path(equal->file));
-            } else if (options_.renew_sidecars) {
-                renew(*equal, sidecar);
+            } else {
+                keep_stored(*equal);
+                if (options_.renew_sidecars) renew(*equal, sidecar);
             }
             return;
         }
@@ -153,6 +161,12 @@ private:
         sidecar.approver = options_.approver;
         sidecar.approved = options_.approved;
         staging_.add_text(sidecar_path(golden), sidecar_text(sidecar));
+    }
+
+    /// An approved image that its sidecar names; the store may have lost it.
+    void keep_stored(const ApprovedImage& approved) {
+        if (suite_.store.empty() || !approved.sidecar || approved.sidecar->sha256.empty()) return;
+        kept_.emplace(approved.sidecar->sha256, approved.file);
     }
 
     /// The SHA-256 of the image, of which a copy goes to the store.
@@ -207,7 +221,8 @@ private:
     InputFiles inputs_;
     Staging staging_;
     ScratchFolder to_push_;
-    std::set<std::string> pushed_;  ///< digests
+    std::set<std::string> pushed_;          ///< digests
+    std::map<std::string, fs::path> kept_;  ///< approved images with equal bits, by digest
     std::mutex mutex_;
 };
 
@@ -219,7 +234,11 @@ std::string foreign_goldens(const GoldenSuite& suite, const GoldenRunOptions& op
         if (!fits_filter(test, options.filters)) continue;
         const ApprovedImage* foreign = nullptr;
         bool has_own_kind = false;
-        const std::vector<ApprovedImage> approved = approved_of(test, options.environment);
+        std::vector<ApprovedImage> approved;
+        // A fault of the images is one of their case, which keeps them.
+        Verdict verdict = Verdict::same;
+        std::vector<std::string> faults;
+        with_case_faults(verdict, faults, [&] { approved = approved_of(test, options.environment); });
         for (const ApprovedImage& image : approved) {
             if (!image.sidecar) continue;
             if (image.sidecar->environment.software == software) has_own_kind = true;
@@ -268,7 +287,9 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
             result.verdict = rendered.verdict;
             result.messages = rendered.messages;
             result.seconds = rendered.seconds;
-            if (result.verdict == Verdict::same) approver.take(result, traced, tracer);
+            if (result.verdict == Verdict::same)
+                with_case_faults(result.verdict, result.messages,
+                                 [&] { approver.take(result, traced, tracer); });
         }
         const std::scoped_lock lock(telling);
         if (listener) listener(result, ++done, int(cases.size()));

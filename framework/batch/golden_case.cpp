@@ -1,6 +1,9 @@
 #include "framework/batch/golden_case.h"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
+#include <ctime>
 
 #include "framework/base/path_bounds.h"
 #include "framework/base/text.h"
@@ -31,6 +34,10 @@ void read_steps(const Node& steps, GoldenCase& result, Diagnostics& diagnostics)
 }
 
 }  // namespace
+
+std::string day_of_today() {
+    return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
+}
 
 std::string golden_image_name(const std::string& image_stem, int frame) {
     return FramePattern(image_stem + ".####").path(frame);

@@ -30,6 +30,9 @@ struct GoldenArea {
     std::optional<Levels> levels;   ///< nullopt: left out
 };
 
+/// Today, UTC: "2027-01-31".
+std::string day_of_today();
+
 /// Until when a failure is a warning.
 struct Quarantine {
     std::string until;  ///< the last day, "2027-01-31", UTC; "": there is none

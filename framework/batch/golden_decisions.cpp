@@ -19,17 +19,19 @@ using Presence = ObjectReader::Presence;
 
 namespace {
 
+std::string fault_of_line(std::string_view text, std::size_t most) {
+    const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+    if (text.size() > most) return fmt::format("has {} bytes; the most is {}", text.size(), most);
+    if (std::ranges::any_of(text, is_control)) return "has a control character; write one line of text";
+    return "";
+}
+
 /// A text of one line, since it is printed and stands in sidecars.
 std::string line_of(ObjectReader& reader, const Node& node, const std::string& key, std::size_t most,
                     Presence presence, Diagnostics& diagnostics) {
     const std::string text = reader.text(key, presence).value_or("");
-    const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
-    if (text.size() > most)
-        diagnostics.error(node.find(key)->place,
-                          fmt::format("'{}' has {} bytes; the most is {}", key, text.size(), most));
-    else if (std::ranges::any_of(text, is_control))
-        diagnostics.error(node.find(key)->place,
-                          fmt::format("'{}' has a control character; write one line of text", key));
+    if (const std::string fault = fault_of_line(text, most); !fault.empty())
+        diagnostics.error(node.find(key)->place, fmt::format("'{}' {}", key, fault));
     return text;
 }
 
@@ -70,6 +72,10 @@ std::string_view identity_of(std::string_view by) {
 }
 
 }  // namespace
+
+std::string fault_of_name(std::string_view text) {
+    return fault_of_line(text, kMostNameBytes);
+}
 
 std::vector<GoldenDecision> parse_decisions(std::string_view text, const std::string& file,
                                             Diagnostics& diagnostics) {

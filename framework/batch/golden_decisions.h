@@ -36,6 +36,10 @@ struct GoldenDecision {
 /// Longer texts are faults: a note is read on a page, and a name stands in a sidecar.
 inline constexpr std::size_t kMostNoteBytes = 2000, kMostNameBytes = 200;
 
+/// Why a text cannot be a name in a decision, without a subject: "has 300 bytes; the most is 200"; "" where
+/// it can.
+std::string fault_of_name(std::string_view text);
+
 /// decisions.json. Faults go to `diagnostics`.
 std::vector<GoldenDecision> parse_decisions(std::string_view text, const std::string& file,
                                             Diagnostics& diagnostics);

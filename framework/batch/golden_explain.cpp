@@ -199,8 +199,10 @@ GoldenExplanation explain_case(const GoldenCase& test, const GoldenRunOptions& o
     result.image.verdict = traced.rendered.verdict;
     std::ranges::stable_sort(traced.rendered.images, {}, &RenderedImage::frame);
     for (const RenderedImage& rendered : traced.rendered.images) {
-        GoldenImage image = judge_image(test, rendered, sources, options.environment, nullptr);
-        if (image.bits_equal) continue;
+        GoldenImage image;
+        with_case_faults(result.image.verdict, result.messages,
+                         [&] { image = judge_image(test, rendered, sources, options.environment, nullptr); });
+        if (image.bits_equal || image.name.empty()) continue;
         result.image = std::move(image);
         explain_image(test, options, tracer.parts(test, rendered.frame), sources,
                       traced.steps[rendered.frame], result);
@@ -215,7 +217,9 @@ GoldenExplanation explain_case(const GoldenCase& test, const GoldenRunOptions& o
             if (!frame || result.image.approved) continue;
             const std::string name = golden_image_name(stem, *frame);
             result.image.name = name, result.image.frame = *frame;
-            result.image.approved = approved_images(test.goldens, name, options.environment).front();
+            with_case_faults(result.image.verdict, result.messages, [&] {
+                result.image.approved = approved_images(test.goldens, name, options.environment).front();
+            });
         }
     if (result.image.approved)
         explain_image(test, options, tracer.parts(test, result.image.frame), sources, {}, result);

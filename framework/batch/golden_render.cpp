@@ -48,13 +48,23 @@ std::vector<int> frames_of(const GoldenCase& test, std::string& absent) {
     return frames;
 }
 
+/// As a word that is no option: a normal path has lost the "./" that it was named with.
+std::string path_word(const fs::path& path) {
+    const std::string text = path.string();
+    return text.starts_with('-') ? "./" + text : text;
+}
+
 std::vector<std::string> words_of(const GoldenCase& test, const GoldenRenderOptions& options,
                                   const fs::path& work) {
     const bool inline_look = test.look.empty();
     const fs::path look = inline_look ? work / "look.json" : test.look;
     if (inline_look) write_text_file(look, test.steps + "\n");
-    std::vector<std::string> words = {"aftershade",          "run", look.string(),
-                                      test.capture.string(), "-o",  (work / "render" / "####.exr").string()};
+    std::vector<std::string> words = {"aftershade",
+                                      "run",
+                                      path_word(look),
+                                      path_word(test.capture),
+                                      "-o",
+                                      (work / "render" / "####.exr").string()};
     const auto add = [&](const char* flag, const std::string& value) {
         words.insert(words.end(), {flag, value});
     };

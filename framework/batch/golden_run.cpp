@@ -62,7 +62,7 @@ void check_layers(GoldenCaseResult& result) {
 void quarantine(GoldenCaseResult& result) {
     const Quarantine& quarantine = result.test->quarantine;
     if (quarantine.until.empty() || result.verdict <= Verdict::warning) return;
-    const bool is_over = quarantine.until < fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
+    const bool is_over = quarantine.until < day_of_today();
     result.messages.push_back(fmt::format("quarantine {} {}: {}", is_over ? "ended" : "until",
                                           quarantine.until, quarantine.reason));
     if (!is_over && result.verdict != Verdict::file_error) result.verdict = Verdict::warning;
@@ -80,11 +80,12 @@ void run_case(const GoldenRunOptions& options, const fs::path& work, ReportPictu
     if (interrupted) return;
     result.verdict = rendered.verdict;
     result.messages = rendered.messages;
-    for (const RenderedImage& image : rendered.images) {
-        result.images.push_back(judge_image(test, image, result.sources, options.environment, pictures));
-        result.verdict = std::max(result.verdict, result.images.back().verdict);
-    }
-    check_layers(result);
+    for (const RenderedImage& image : rendered.images)
+        with_case_faults(result.verdict, result.messages, [&] {
+            result.images.push_back(judge_image(test, image, result.sources, options.environment, pictures));
+            result.verdict = std::max(result.verdict, result.images.back().verdict);
+        });
+    if (result.images.size() == rendered.images.size()) check_layers(result);
     if (options.runs == 1 || rendered.images.empty()) return;
     const std::string difference =
         difference_of_runs(test, options.render, rendered, options.runs, work, interrupt);
@@ -132,6 +133,17 @@ bool is_unfetched(const GoldenCase& test, const GoldenRunOptions& options, Verdi
     verdict = Verdict::file_error;
     messages = unfetched->second;
     return true;
+}
+
+void with_case_faults(Verdict& verdict, std::vector<std::string>& messages,
+                      const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::capture) throw;
+        verdict = Verdict::file_error;
+        messages.emplace_back(error.what());
+    }
 }
 
 std::vector<std::string> look_hashes(const std::vector<const GoldenCase*>& cases,

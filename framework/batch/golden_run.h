@@ -116,6 +116,11 @@ void for_each_in_folders(std::size_t count, int jobs,
 bool is_unfetched(const GoldenCase& test, const GoldenRunOptions& options, Verdict& verdict,
                   std::vector<std::string>& messages);
 
+/// Calls `work` about one case. What it throws of the kind ErrorKind::capture, such as an approved image that
+/// leads out of its folder, is a file error of this case and ends no other.
+void with_case_faults(Verdict& verdict, std::vector<std::string>& messages,
+                      const std::function<void()>& work);
+
 /// Whether two files have the same layers with the same bits in every value.
 bool has_equal_bits(const Comparison& comparison);
 

@@ -135,6 +135,15 @@ std::map<std::string, std::string> GoldenStore::fetch(const std::set<std::string
     return faults;
 }
 
+std::set<std::string> GoldenStore::lacking(const std::set<std::string>& digests,
+                                           const std::atomic<bool>& interrupt) const {
+    std::set<std::string> absent;
+    if (digests.empty()) return absent;
+    for (const auto& [digest, fault] : transfer(Direction::find, digests, {}, interrupt))
+        absent.insert(digest);
+    return absent;
+}
+
 void GoldenStore::push(const std::set<std::string>& digests, const fs::path& folder,
                        const std::atomic<bool>& interrupt) const {
     if (digests.empty()) return;
@@ -162,9 +171,9 @@ GoldenStore::Faults GoldenStore::by_folder(Direction direction, const std::set<s
     for (const std::string& digest : digests) {
         const fs::path name = stored_name(digest);
         std::string fault = why;
-        if (fault.empty() && direction == Direction::fetch) {
+        if (fault.empty() && direction != Direction::push) {
             const std::string bytes = read_file_below(there, name, kMaxStoredBytes, fault);
-            if (fault.empty()) write_text_file(folder / name, bytes);
+            if (fault.empty() && direction == Direction::fetch) write_text_file(folder / name, bytes);
         } else if (fault.empty()) {
             const std::string bytes = read_text_file(folder / name, ErrorKind::output, kMaxStoredBytes);
             fs::create_directories(there);
@@ -181,10 +190,12 @@ GoldenStore::Faults GoldenStore::by_curl(Direction direction, const std::set<std
     const std::vector<std::string> in_order(digests.begin(), digests.end());
     std::string config = curl_options(url, std::chrono::duration<double>(timeout_).count());
     // What a token is sent with stays where it was sent to.
-    if (direction == Direction::fetch) config += "location\n";
+    if (direction != Direction::push) config += "location\n";
+    if (direction == Direction::find) config += "head\n";
     for (const std::string& digest : in_order) {
-        const std::string file = config_text((folder / stored_name(digest)).string());
-        config += (direction == Direction::fetch ? "output = " : "upload-file = ") + file + "\n";
+        const std::string file =
+            direction == Direction::find ? "/dev/null" : (folder / stored_name(digest)).string();
+        config += (direction == Direction::push ? "upload-file = " : "output = ") + config_text(file) + "\n";
         config += "url = " + config_text(url + "/" + stored_name(digest)) + "\n";
     }
     const ScratchFolder scratch;  // that no one else can read: the token is in the file
@@ -219,20 +230,36 @@ GoldenStore::Faults GoldenStore::by_rclone(Direction direction, const std::set<s
     std::string names;
     for (const std::string& digest : digests) names += stored_name(digest) + "\n";
     write_text_file(list, names);
-    const std::string from = direction == Direction::fetch ? remote : folder.string();
-    const std::string to = direction == Direction::fetch ? folder.string() : remote;
     const std::string timeout = fmt::format("{:.3f}s", std::chrono::duration<double>(timeout_).count());
     WorkerCommand command;
-    command.arguments = {
-        "copy", "--files-from-raw", list.string(), "--no-traverse", "--retries", "2",  "--low-level-retries",
-        "2",    "--contimeout",     "15s",         "--timeout",     timeout,     "--", from,
-        to};
+    command.arguments = {direction == Direction::find ? "lsf" : "copy",
+                         "--files-from-raw",
+                         list.string(),
+                         "--no-traverse",
+                         "--retries",
+                         "2",
+                         "--low-level-retries",
+                         "2",
+                         "--contimeout",
+                         "15s",
+                         "--timeout",
+                         timeout,
+                         "--"};
+    if (direction == Direction::push) command.arguments.push_back(folder.string());
+    command.arguments.push_back(remote);
+    if (direction == Direction::fetch) command.arguments.push_back(folder.string());
     command.limits.wall_time = timeout_ * int(digests.size() / 4 + 2);
-    const std::string fault = fault_of_program("rclone", "rclone", command, {}, interrupt);
+    std::set<std::string> listed;
+    WorkerListener listener;
+    listener.on_stdout = [&](std::string_view line) { listed.emplace(trimmed(line)); };
+    const std::string fault = fault_of_program("rclone", "rclone", command, listener, interrupt);
+    const auto is_there = [&](const fs::path& name) {
+        if (direction == Direction::find) return listed.contains(name.string());
+        return fault.empty() || (direction == Direction::fetch && fs::exists(folder / name));
+    };
     Faults faults;
     for (const std::string& digest : digests)
-        if (!fault.empty() && (direction == Direction::push || !fs::exists(folder / stored_name(digest))))
-            faults[digest] = fault;
+        if (!is_there(stored_name(digest))) faults[digest] = fault;
     return faults;
 }
 

@@ -39,13 +39,16 @@ public:
     std::map<std::string, std::string> fetch(const std::set<std::string>& digests,
                                              const std::filesystem::path& folder,
                                              const std::atomic<bool>& interrupt) const;
+    /// Those that the store does not have, or that it cannot be asked about. Does not fetch them.
+    std::set<std::string> lacking(const std::set<std::string>& digests,
+                                  const std::atomic<bool>& interrupt) const;
     /// From `folder`, and fetches them again to see that they are there. Throws Error(ErrorKind::output) with
     /// the first reason.
     void push(const std::set<std::string>& digests, const std::filesystem::path& folder,
               const std::atomic<bool>& interrupt) const;
 
 private:
-    enum class Direction { fetch, push };
+    enum class Direction { fetch, push, find };
     using Faults = std::map<std::string, std::string>;
     Faults transfer(Direction direction, const std::set<std::string>& digests,
                     const std::filesystem::path& folder, const std::atomic<bool>& interrupt) const;

@@ -167,6 +167,15 @@ bool fits_filter(const GoldenCase& test, const std::vector<std::string>& filters
     return filters.empty() || std::ranges::any_of(filters, fits);
 }
 
+std::string no_case_fits(const GoldenSuite& suite, const std::string& filter) {
+    std::vector<std::string> words;
+    for (const GoldenCase& test : suite.cases) {
+        words.push_back(test.name);
+        words.insert(words.end(), test.tags.begin(), test.tags.end());
+    }
+    return "matches no case's name or tag" + did_you_mean(filter, words);
+}
+
 std::vector<fs::path> orphaned_goldens(const GoldenSuite& suite, const std::vector<std::string>& filters) {
     std::map<fs::path, std::map<std::string, KnownImages>> known;  // by folder, by case
     std::set<std::pair<fs::path, std::string>> chosen;

@@ -35,6 +35,9 @@ std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagno
 /// Without filters every case fits.
 bool fits_filter(const GoldenCase& test, const std::vector<std::string>& filters);
 
+/// What is wrong with a name, glob or tag that fits no case of the suite; names one that is like it.
+std::string no_case_fits(const GoldenSuite& suite, const std::string& filter);
+
 /// Images (and sidecars without one) in the folders of goldens that no case of the suite gives. With filters
 /// only those whose names begin with a case that fits. Sorted.
 std::vector<std::filesystem::path> orphaned_goldens(const GoldenSuite& suite,

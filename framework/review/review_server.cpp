@@ -7,6 +7,7 @@
 
 #include "framework/base/data_path.h"
 #include "framework/base/error.h"
+#include "framework/base/text.h"
 #include "framework/batch/report_file.h"
 #include "framework/serve/page_files.h"
 #include "framework/serve/refusal.h"
@@ -24,6 +25,22 @@ using serve::Response;
 std::string text_of(const Json& json, const char* key) {
     const auto found = json.find(key);
     return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// Names of a report, as decisions.json takes them: with others no reviewer could read the file again.
+void check_names(const std::string& test, const std::vector<SeenImage>& images) {
+    const auto check = [](const char* what, const std::string& name) {
+        if (const std::string fault = fault_of_name(name); !fault.empty())
+            throw Error(ErrorKind::capture, std::string("report.json: ") + what + " '" +
+                                                printable(name.substr(0, 40)) + "...' " + fault +
+                                                " (run the suite again; no case draws such a name)");
+    };
+    check("the name of a case", test);
+    for (const SeenImage& image : images) {
+        check("the name of an image", image.name);
+        check("the hash of an image", image.test);
+        check("the hash of an image", image.reference);
+    }
 }
 
 /// One decision of a request's body.
@@ -84,6 +101,7 @@ std::map<std::string, ReviewedCase> ReviewServer::cases_of(const Json& report) {
             reviewed.can_approve &= !reviewed.images.back().test.empty();
             reviewed.adds |= image.at("verdict") != "same" && image.at("only_machine_changed") == true;
         }
+        check_names(test.at("name").get<std::string>(), reviewed.images);
     }
     return cases;
 }

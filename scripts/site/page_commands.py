@@ -48,6 +48,7 @@ BEFORE = {
     ("docs/compare.md", "aftershade compare golden.exr out.exr --json"): "cp golden.exr out.exr\n",
     ("README.md", "aftershade run scenes/looks/portrait.json scenes/suzanne/capture.json -o film.mp4"): FFMPEG,
     ("docs/batch.md", "aftershade run look.json wheel -o film.mp4"): FFMPEG,
+    ("docs/golden.md", "export GOLDEN_SUITE=golden"): 'cp -r "$ROOT/ci" . && cp -r SUITE golden\n',
     ("docs/golden.md", "aftershade golden comment report"):
         "export URL=https://ci.example PULL_REQUEST=7\n"
         "printf '#!/bin/sh\\ngrep -q \"aftershade golden\" comment.md\\n' >\"$HOME/bin/gh\" && chmod +x \"$HOME/bin/gh\"\n",

@@ -155,6 +155,7 @@ TEST_F(GoldenApply, OfAHostileFileWritesNothing) {
     };
     for (const char* name : {"../../etc/passwd", "/etc/passwd", "goldens/corner", ".", "", "nothing*"})
         refuses(decision("\"case\": \"" + std::string(name) + "\""), "matches no case's name or tag");
+    refuses(decision(R"("case": "lends")"), "did you mean 'lens'?");
     refuses(decision(R"("case": "*", "images": [ { "name": "x", "test": "y" } ])"), "matches no case's name");
     refuses(decision(R"("case": "corner\u0000/x")"), "zero byte");
     refuses(decision(R"("case": "corner", "by": "\u001b[2J")"), "control character");

@@ -304,6 +304,23 @@ TEST_F(GoldenRun, EndsWithTheWorstVerdict) {
     EXPECT_NE(result.err.find("file error"), std::string::npos) << result.err;
 }
 
+TEST_F(GoldenRun, FailsTheCaseAloneWhoseGoldenLeadsOutOfItsFolder) {
+    approve();
+    const TemporaryFolder elsewhere;
+    std::filesystem::rename(image("corner.color.0001"), elsewhere / "corner.exr");
+    std::filesystem::create_symlink(elsewhere / "corner.exr", image("corner.color.0001"));
+    const Json told = report();
+    EXPECT_EQ(told["exit_code"], 4);
+    EXPECT_EQ(case_of(told, "lens")["verdict"], "same");
+    EXPECT_NE(case_of(told, "corner")["messages"].dump().find("leads out of the folder"), std::string::npos);
+    write_frame(1, 90);
+    const CommandResult approved = golden({"approve", "golden.json"});
+    EXPECT_EQ(approved.exit_code, 4) << approved.err;
+    EXPECT_NE(approved.out.find("lens.color.0001.exr"), std::string::npos) << "the other case is approved";
+    EXPECT_TRUE(std::filesystem::is_symlink(image("corner.color.0001")));
+    EXPECT_EQ(golden({"explain", "golden.json", "corner"}).exit_code, 1);
+}
+
 TEST_F(GoldenRun, FailsForOrphanedGoldens) {
     approve();
     fs::copy_file(image("lens.color.0001"), image("lens.color.0007"));

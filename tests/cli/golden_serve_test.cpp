@@ -48,6 +48,15 @@ TEST_F(GoldenServe, SaysWhatIsWrongWithAReportOrItsDecisionsBeforeThereIsAPage) 
     std::filesystem::create_symlink("/etc/passwd", folder_ / "report/decisions.json");
     EXPECT_NE(err().find("decisions.json"), std::string::npos);
     std::filesystem::remove(folder_ / "report/decisions.json");
+    // Of such names no reviewer could read the decisions again.
+    const std::string report = read_text(folder_ / "report/report.json");
+    for (const auto& [name, fault] : {std::pair{std::string(300, 'x'), "has 300 bytes; the most is 200"},
+                                      {std::string("a\nb"), "has a control character"}}) {
+        Json changed = Json::parse(report);
+        for (Json& test : changed["cases"]) test["images"][0]["name"] = name;
+        write_text(folder_ / "report/report.json", changed.dump());
+        EXPECT_NE(err().find(fault), std::string::npos) << err();
+    }
     write_text(folder_ / "report/report.json", "{}");
     EXPECT_NE(err().find("is not a report of a golden suite"), std::string::npos);
 }

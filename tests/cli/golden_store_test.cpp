@@ -52,6 +52,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         if mode == "short": body = body[:100]
         if mode == "truncated": self.close_connection = True; return self.answer(200, body[:100], len(body))
         self.answer(200, body)
+    def do_HEAD(self):
+        if not self.refused(): self.answer(200 if os.path.exists(self.path_of()) else 404)
     def do_PUT(self):
         if self.refused(): return
         body = self.rfile.read(int(self.headers["Content-Length"]))
@@ -154,6 +156,18 @@ protected:
         ASSERT_EQ(approve_there(environment).exit_code, 0);
         remove_images();
         EXPECT_EQ(run_there(environment).exit_code, 0);
+        lose_images();
+        ASSERT_EQ(approve_there(environment).exit_code, 0);
+        remove_images();
+        EXPECT_EQ(run_there(environment).exit_code, 0) << "approve gives back what the store has lost";
+    }
+    /// The store's, of whatever kind it is.
+    void lose_images() {
+        std::vector<fs::path> images;
+        for (const auto& entry : fs::recursive_directory_iterator(folder_ / "images"))
+            if (entry.path().extension() == ".exr") images.push_back(entry.path());
+        ASSERT_FALSE(images.empty());
+        for (const fs::path& image : images) fs::remove(image);
     }
 
     std::optional<Command> server_;
@@ -200,7 +214,7 @@ TEST_F(GoldenStore, KeepsImagesWhereRcloneReaches) {
     port_ = free_port();
     server_.emplace(
         std::vector<std::string>{"/usr/bin/rclone", "serve", "webdav", (folder_ / "images").string(),
-                                 "--addr", "127.0.0.1:" + std::to_string(port_)},
+                                 "--addr", "127.0.0.1:" + std::to_string(port_), "--dir-cache-time", "0s"},
         folder_.path());
     ASSERT_TRUE(wait_for_port(port_));
     const Environment remote{{"RCLONE_CONFIG_SHARE_TYPE", "webdav"},

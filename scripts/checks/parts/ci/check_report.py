@@ -7,6 +7,7 @@ of JUnit files counts in it what report.json says.
 """
 
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -27,8 +28,8 @@ def check_report(folder, verdict, commit):
     expect("exit_code", report["exit_code"], EXIT_CODES[verdict])
     expect("commit", report["environment"]["commit"], commit)
     expect("backend", report["environment"]["backend"], "software")
-    expect("cases", report["counts"]["cases"], 3)
-    expect("cases passed", report["counts"]["passed"], 3 if verdict == "same" else 2)
+    expect("cases", report["counts"]["cases"], 10)
+    expect("cases passed", report["counts"]["passed"], 10 if verdict == "same" else 9)
     expect("cases skipped", report["counts"]["skipped"], 0)
     pictures = [picture for case in report["cases"] for image in case["images"]
                 for picture in image["pictures"].values() if isinstance(picture, str)]
@@ -54,7 +55,9 @@ def main():
     check_junit(folder / "junit.xml", schema, report["counts"])
     for file in sys.argv[5:]:
         expect(f"{file} there", (folder / file).exists(), True)
-    print(f"report: {verdict}, commit {commit[:10]}, {pictures} pictures; junit.xml is valid")
+    limit_s = float(os.environ.get("LIMIT_S", "10"))
+    expect(f"golden run above {limit_s:.0f} s, with {report['seconds']:.1f} s,", report["seconds"] > limit_s, False)
+    print(f"report: {verdict}, ten cases in {report['seconds']:.2f} s, commit {commit[:10]}, {pictures} pictures; junit.xml is valid")
 
 
 main()

@@ -1,4 +1,4 @@
-"""A job's container (a chroot on Debian 12) and what a runner keeps between and after jobs."""
+"""A job's container (a chroot on Debian) and what a runner keeps between and after jobs."""
 
 import os
 import shutil
@@ -6,8 +6,10 @@ import subprocess
 from pathlib import Path
 
 PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
-# How this machine reaches the package mirror, and how many compilers it can bear: not the recipe's.
-OF_THIS_MACHINE = ("http_proxy", "https_proxy", "CMAKE_BUILD_PARALLEL_LEVEL")
+# How this machine reaches the package mirror: not the recipe's.
+OF_THIS_MACHINE = ("http_proxy", "https_proxy")
+# A branch that a job's shell must not take for a command: it would make the file PWNED.
+BRANCH = "a$(touch${IFS}PWNED);touch${IFS}PWNED"
 
 
 class Failed(Exception):
@@ -18,7 +20,7 @@ class Container:
     def __init__(self, root, workspace, environment):
         self.root = Path(root)
         self.workspace = workspace
-        self.environment = {"PATH": PATH, **environment}
+        self.environment = {"PATH": PATH, "no_proxy": "127.0.0.1", **environment}
         self.environment.update({name: os.environ[name] for name in OF_THIS_MACHINE if name in os.environ})
         self.at(workspace).mkdir(parents=True)
 

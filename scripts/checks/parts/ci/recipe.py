@@ -1,6 +1,6 @@
 """The recipes of docs/golden.md, as they are printed there.
 
-    recipe.py DOCUMENT FOLDER     writes FOLDER/github.yml and FOLDER/gitlab.yml
+    recipe.py DOCUMENT FOLDER [WORD=TEXT...]     writes FOLDER/github.yml, gitlab.yml, Jenkinsfile and shell.sh, with each WORD replaced
 """
 
 import re
@@ -15,14 +15,20 @@ class Unknown(Exception):
 
 
 def recipes_in(markdown):
-    """{"github": text, "gitlab": text} of the section "In CI"."""
+    """{"github.yml": text, ...} of the section "In CI"."""
     section = re.search(r"^## In CI\n(.*?)(?=^## |\Z)", markdown, re.MULTILINE | re.DOTALL)
     if not section:
         raise Unknown('no section "In CI"')
-    texts = re.findall(r"^```yaml\n(.*?)^```$", section.group(1), re.MULTILINE | re.DOTALL)
-    found = {"github" if "jobs" in yaml.safe_load(text) else "gitlab": text for text in texts}
-    if len(texts) != 2 or len(found) != 2:
-        raise Unknown(f'"In CI" has {len(texts)} yaml blocks; one of GitHub and one of GitLab were expected')
+    blocks = re.findall(r"^```(\w+)\n(.*?)^```$", section.group(1), re.MULTILINE | re.DOTALL)
+
+    def name_of(kind, text):
+        if kind == "yaml":
+            return "github.yml" if "jobs" in yaml.safe_load(text) else "gitlab.yml"
+        return {"groovy": "Jenkinsfile", "sh": "shell.sh"}[kind]
+
+    found = {name_of(kind, text): text for kind, text in blocks}
+    if len(blocks) != 4 or len(found) != 4:
+        raise Unknown(f'"In CI" has {len(blocks)} blocks; one of GitHub, GitLab, Jenkins and the shell each was expected')
     return found
 
 
@@ -35,8 +41,12 @@ def known(mapping, keys, where):
 
 
 def main():
-    for name, text in recipes_in(Path(sys.argv[1]).read_text()).items():
-        (Path(sys.argv[2]) / f"{name}.yml").write_text(text)
+    document, folder, *words = sys.argv[1:]
+    for name, text in recipes_in(Path(document).read_text()).items():
+        for word in words:
+            before, after = word.split("=", 1)
+            text = text.replace(before, after)
+        (Path(folder) / name).write_text(text)
 
 
 if __name__ == "__main__":
