@@ -243,6 +243,8 @@ private:
         if (!is_empty(comparison.window)) {
             images.reference = read(reference_, reference, common.reference, comparison);
             images.test = read(test_, test, common.test, comparison);
+            images.reference_primaries = reference_.traits().primaries;
+            images.test_primaries = test_.traits().primaries;
             images.areas = pixel_areas(rules_.areas, comparison.window, reference.display_window,
                                        rules_.difference_rules(comparison.label));
             compare_layer(images, rules_, comparison);

@@ -17,6 +17,7 @@
 #include "framework/compare/layer_file.h"
 #include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_differences.h"
+#include "framework/image/color_space.h"
 
 namespace aftershade {
 
@@ -95,6 +96,8 @@ struct Comparison {
 struct LayerImages {
     Image reference, test;
     PixelAreas areas = {};
+    /// Of the light in each image, where the layer is `color`.
+    Chromaticities reference_primaries = kRec709, test_primaries = kRec709;
 };
 
 /// Called after each layer; the images may be moved from.

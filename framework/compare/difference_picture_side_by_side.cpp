@@ -11,6 +11,7 @@
 
 #include "framework/base/text.h"
 #include "framework/compare/difference_picture.h"
+#include "framework/compare/perceptual.h"
 #include "framework/image/false_color.h"
 
 namespace aftershade {
@@ -186,7 +187,8 @@ void add_difference(const LayerComparison& layer, const LayerImages& images, Sid
 SideBySideRow side_by_side_row(const LayerComparison& layer, const LayerImages& images) {
     SideBySideRow row;
     const int width = images.reference.width(), height = images.reference.height();
-    const Image both = stacked(images, layer.role);
+    const std::optional<LayerImages> converted = in_rec709(images, layer.role);
+    const Image both = stacked(converted ? *converted : images, layer.role);
     std::optional<FalseColor> colors;
     ColorAt color;
     if (layer.role == LayerRole::display) {
@@ -198,7 +200,7 @@ SideBySideRow side_by_side_row(const LayerComparison& layer, const LayerImages& 
             return DisplayColor{at(0), at(1), at(2)};
         };
     } else {
-        colors.emplace(false_color_role(layer, both), both, Chromaticities{});
+        colors.emplace(false_color_role(layer, both), both, kRec709);
         color = [&](int x, int y) { return colors->color(x, y); };
     }
     row.pictures[0] = tile(width, height, color, false);

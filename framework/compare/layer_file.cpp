@@ -109,6 +109,10 @@ void LayerFile::Impl::open_exr(ExrFile file) {
     const int hero = color == layers.end() ? 0 : part_of(*color);
     const StoredColors stored = stored_colors(parts.front().metadata, parts[std::size_t(hero)].metadata);
     traits.colors = stored.meaning();
+    if (!stored.encoding.is_light()) return;
+    // Writers round: primaries of one name are the same.
+    const Chromaticities& primaries = stored.encoding.primaries;
+    traits.primaries = color_space_primaries(name_of_primaries(primaries)).value_or(primaries);
 }
 
 void LayerFile::Impl::read_manifests(const ExrMetadata& metadata) {

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include "framework/base/parallel.h"
 #include "framework/compare/ssim.h"
@@ -65,13 +68,12 @@ FlipResult no_difference(const Image& image) {
     return result;
 }
 
-void measure_flip(const Image& reference, const Image& test, const CompareRules& rules,
+void measure_flip(const Image& reference, const Image& test, bool equal, const CompareRules& rules,
                   LayerComparison& comparison) {
     const Choice choice(rules.flip_choice, comparison.role);
     if (!choice.ldr && !choice.hdr) return;
     FlipOptions options = rules.flip;
     options.threads = thread_count(rules.threads);
-    const bool equal = comparison.differences.bits_equal;
     const Image r = linear_rgb(reference, comparison.role, rules.threads);
     const Image t = linear_rgb(test, comparison.role, rules.threads);
     if (choice.ldr) comparison.ldr_flip = equal ? no_difference(r) : ldr_flip(r, t, options);
@@ -116,7 +118,32 @@ void leave_out(const PixelAreas& areas, FlipResult& flip) {
     flip.mean = sum / double(pixels);
 }
 
+/// Keeps pixels that are not finite: a matrix would spread one channel's fault over all three.
+Image in_rec709(const Image& image, const Chromaticities& primaries) {
+    Image converted = image;
+    convert_colors(converted, conversion_matrix(primaries, kRec709));
+    const std::span<const float> stored = image.floats();
+    for (std::size_t i = 0; i + 2 < stored.size(); i += 3)
+        if (!std::ranges::all_of(stored.subspan(i, 3), [](float value) { return std::isfinite(value); }))
+            std::ranges::copy(stored.subspan(i, 3), converted.floats().begin() + std::ptrdiff_t(i));
+    return converted;
+}
+
 }  // namespace
+
+std::optional<LayerImages> in_rec709(const LayerImages& images, LayerRole role) {
+    const bool is_light = role == LayerRole::color && images.reference.channels() == 3 &&
+                          images.reference.type() == ComponentType::float32;
+    if (!is_light || (images.reference_primaries == kRec709 && images.test_primaries == kRec709))
+        return std::nullopt;
+    LayerImages converted = images;
+    for (const auto& [image, primaries] : {std::pair{&converted.reference, &converted.reference_primaries},
+                                           {&converted.test, &converted.test_primaries}}) {
+        if (*primaries != kRec709) *image = in_rec709(*image, *primaries);
+        *primaries = kRec709;
+    }
+    return converted;
+}
 
 Image linear_rgb(const Image& image, LayerRole role, int threads) {
     Image rgb(image.width(), image.height(), 3);
@@ -134,19 +161,25 @@ Image linear_rgb(const Image& image, LayerRole role, int threads) {
 }
 
 void measure_perceptually(const LayerImages& images, const CompareRules& rules, LayerComparison& comparison) {
-    const Image& reference = images.reference;
-    const bool picture = reference.channels() == 1 || reference.channels() == 3;
-    if (!is_perceptual(comparison.role) || !picture || reference.type() != ComponentType::float32) return;
+    const int channels = images.reference.channels();
+    const bool picture = channels == 1 || channels == 3;
+    if (!is_perceptual(comparison.role) || !picture || images.reference.type() != ComponentType::float32)
+        return;
+    const std::optional<LayerImages> converted = in_rec709(images, comparison.role);
+    const LayerImages& seen = converted ? *converted : images;
+    const Image& reference = seen.reference;
+    const bool equal = comparison.differences.bits_equal &&
+                       (!converted || images.reference_primaries == images.test_primaries);
     const bool leaves_out = comparison.differences.left_out > 0;
-    const Image substituted = leaves_out ? with_reference_values(images) : Image();
-    const Image& test = leaves_out ? substituted : images.test;
-    measure_flip(reference, test, rules, comparison);
+    const Image substituted = leaves_out ? with_reference_values(seen) : Image();
+    const Image& test = leaves_out ? substituted : seen.test;
+    measure_flip(reference, test, equal, rules, comparison);
     if (leaves_out)
         for (std::optional<FlipResult>* flip : {&comparison.ldr_flip, &comparison.hdr_flip})
             if (*flip) leave_out(images.areas, **flip);
     if (!rules.ssim) return;
     const bool scales = std::min(reference.width(), reference.height()) >= kMsSsimMinSide_px && !leaves_out;
-    if (comparison.differences.bits_equal) {
+    if (equal) {
         comparison.ssim = 1;
         if (rules.ssim_map) {
             comparison.ssim_map = Image(reference.width(), reference.height(), 1);

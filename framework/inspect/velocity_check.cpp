@@ -34,7 +34,7 @@ constexpr double kWorst = -std::numeric_limits<double>::infinity();
 class Tests {
 public:
     explicit Tests(const VelocityCheckInput& input)
-        : pivot_(median_luminance(*input.color_a, *input.color_b)),
+        : pivot_(median_luminance(*input.color_a, *input.color_b, input.primaries)),
           a_(make_compared(*input.color_a, pivot_)),
           b_(make_compared(*input.color_b, pivot_)) {
         const bool next = input.settings.is_next();

@@ -2,6 +2,7 @@
 // looks whether the other appears, for every way in which the profile can be wrong.
 #pragma once
 
+#include "framework/image/color_space.h"
 #include "framework/image/image.h"
 #include "framework/inspect/velocity_result.h"
 
@@ -13,7 +14,8 @@ struct VelocityCheckInput {
     /// The role's image as the profile decoded it: two or more channels, px, +y down. nullptr: there is none.
     const Image* vectors_a = nullptr;
     const Image* vectors_b = nullptr;
-    VelocitySettings settings;  ///< that decoded them
+    VelocitySettings settings;           ///< that decoded them
+    Chromaticities primaries = kRec709;  ///< of both frames' colours
 };
 
 /// NaN and infinite vectors and those longer than the diagonal count as none; NaN colours are left out. The

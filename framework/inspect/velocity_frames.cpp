@@ -65,7 +65,7 @@ std::vector<RoleVelocityCheck> check_velocity_of_frames(
         const Image* const vectors_b = on_display(b, role.name);
         if (!vectors_a && !vectors_b) continue;
         checks.push_back({role.name, check_velocity({color_a, color_b, vectors_a, vectors_b,
-                                                     settings_of(role, decodings)})});
+                                                     settings_of(role, decodings), a.header.primaries})});
     }
     return checks;
 }

@@ -66,13 +66,14 @@ bool is_usable(const Image& color, int x, int y) {
 
 }  // namespace
 
-double median_luminance(const Image& color_a, const Image& color_b) {
+double median_luminance(const Image& color_a, const Image& color_b, const Chromaticities& primaries) {
+    const auto [red, green, blue] = luminance_weights(primaries);
     std::vector<float> values;
     for (const Image* color : {&color_a, &color_b})
         for (int y = 0; y < color->height(); ++y)
             for (int x = 0; x < color->width(); ++x) {
-                const float luminance = 0.2126f * color->at(x, y, 0) + 0.7152f * color->at(x, y, 1) +
-                                        0.0722f * color->at(x, y, 2);
+                const float luminance = float(red) * color->at(x, y, 0) + float(green) * color->at(x, y, 1) +
+                                        float(blue) * color->at(x, y, 2);
                 if (luminance > 0 && std::isfinite(luminance)) values.push_back(luminance);
             }
     if (values.empty()) return 1;

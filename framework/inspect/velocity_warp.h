@@ -1,5 +1,5 @@
-// How well one frame, warped by motion vectors, becomes another: the measure of velocity_check.cpp. No other
-// file includes it.
+// How well one frame, warped by motion vectors, becomes another: the measure of velocity_check.cpp. Only
+// this file and tests include it.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "framework/image/color_space.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
@@ -23,8 +24,9 @@ struct ComparedFrame {
     const std::array<float, 4>& at(int x, int y) const { return texels[std::size_t(y) * width + x]; }
 };
 
-/// The median luminance of both frames where they are not black: what ComparedFrame maps to 0.5.
-double median_luminance(const Image& color_a, const Image& color_b);
+/// The median luminance of both frames, whose colours have these primaries, where they are not black: what
+/// ComparedFrame maps to 0.5.
+double median_luminance(const Image& color_a, const Image& color_b, const Chromaticities& primaries);
 ComparedFrame make_compared(const Image& color, double pivot);
 
 struct Move {

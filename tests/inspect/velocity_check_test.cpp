@@ -1,7 +1,9 @@
 #include "framework/inspect/velocity_check.h"
 
 #include "framework/base/error.h"
+#include "framework/image/color_space.h"
 #include "framework/inspect/velocity_report.h"
+#include "framework/inspect/velocity_warp.h"
 #include "tests/inspect/velocity_pairs.h"
 #include "tests/synthetic_capture.h"
 
@@ -49,6 +51,15 @@ const Vector kMotion{10, 4}, kOther{7, -7};
 std::string name_of(const VelocityHypothesis& h) {
     return std::string(h.other_time ? "other time, " : "") + (h.swapped ? "swapped, " : "") +
            std::to_string(h.scale_x) + ", " + std::to_string(h.scale_y);
+}
+
+TEST(VelocityCheck, WeighsColoursByTheirPrimaries) {
+    // Red of Rec. 709 in ACEScg: the first column of the ACES project's matrix from Rec. 709 to AP1.
+    Image red(1, 1, 3), wide(1, 1, 3);
+    red.at(0, 0, 0) = 1;
+    wide.at(0, 0, 0) = 0.613097f, wide.at(0, 0, 1) = 0.070194f, wide.at(0, 0, 2) = 0.020616f;
+    EXPECT_FLOAT_EQ(float(median_luminance(red, red, kRec709)), 0.2126f);
+    EXPECT_NEAR(median_luminance(wide, wide, *color_space_primaries("acescg")), 0.2126, 1e-4);
 }
 
 TEST(VelocityCheck, EveryListedHypothesisIsFoundWhereItIsTrue) {
