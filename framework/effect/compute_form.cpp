@@ -25,14 +25,17 @@ precise vec4 as_FragCoord = vec4(vec2(gl_GlobalInvocationID.xy) + 0.5, 0.0, 1.0)
 bool aftershade_is_discarded = false;
 )";
 
-/// Which texels the quads of glsl/tile_runs.glsl cover, by the bits of each group of tiles.
+/// Which texels the quads of glsl/tile_runs.glsl cover, by the bits of each group of tiles. Corners are
+/// rounded to 1/256 texel. Where an edge then goes through a texel's centre, that texel belongs to the tile
+/// on the right or above, hence 1/512.
 constexpr const char* kDrawnTiles = R"(
 layout(std140, binding = $binding) uniform AftershadeTiles {
     vec4 aftershade_grid_size;
     int aftershade_tile_side, aftershade_tiles_across, aftershade_tiles_down;
 };
 bool aftershade_is_drawn(ivec2 texel, ivec2 size) {
-    ivec2 tile = ivec2((vec2(texel) + 0.5) * (aftershade_grid_size.xy / vec2(size))) / aftershade_tile_side;
+    vec2 at = vec2(texel) + vec2(0.5 + 1.0 / 512.0, 0.5 - 1.0 / 512.0);
+    ivec2 tile = ivec2(at * (aftershade_grid_size.xy / vec2(size))) / aftershade_tile_side;
     if (tile.x >= aftershade_tiles_across || tile.y >= aftershade_tiles_down) return false;
     uint tiles = $runs[tile.y * ((aftershade_tiles_across + 15) / 16) + tile.x / 16].w;
     return (tiles >> (tile.x & 15) & 1u) != 0u;
@@ -48,6 +51,8 @@ uvec4 aftershade_texel(uint v) { return uvec4(v, 0u, 0u, 1u); }
 uvec4 aftershade_texel(uvec2 v) { return uvec4(v, 0u, 1u); }
 uvec4 aftershade_texel(uvec4 v) { return v; }
 ivec4 aftershade_texel(int v) { return ivec4(v, 0, 0, 1); }
+// A draw turns NaN into 0 in formats of bytes, and llvmpipe's imageStore() into 1.
+vec4 aftershade_bytes(vec4 v) { return mix(v, vec4(0.0), isnan(v)); }
 void main() {
     ivec2 aftershade_at = ivec2(gl_GlobalInvocationID.xy), aftershade_size = imageSize(aftershade_target_0);
     if (any(greaterThanEqual(aftershade_at, aftershade_size))) return;
@@ -192,8 +197,11 @@ private:
             source_.text += "layout(binding = " + std::to_string(shape_.first_target_unit + int(i)) + ", " +
                             std::string(gpu::texture_format_name(format)) + ") restrict writeonly uniform " +
                             std::string(prefix) + "image2D " + target + ";\n";
-            stores +=
-                "    imageStore(" + target + ", aftershade_at, aftershade_texel(" + outputs_[i] + "));\n";
+            const bool has_bytes =
+                !gpu::is_integer(format) && gpu::bytes_per_texel(format) == gpu::channel_count(format);
+            const std::string texel = "aftershade_texel(" + outputs_[i] + ")";
+            stores += "    imageStore(" + target + ", aftershade_at, " +
+                      (has_bytes ? "aftershade_bytes(" + texel + ")" : texel) + ");\n";
         }
         source_.text += shape_.tile_runs ? filled(kDrawnTiles, {{"binding", std::to_string(kTilesBinding)},
                                                                 {"runs", *shape_.tile_runs}})

@@ -180,6 +180,26 @@ TEST_P(DrawsAsComputeShaders, GiveTheBitsOfFragmentsInGeneratedEffects) {
     }
 }
 
+/// The colour of `effect` drawn both ways.
+struct BothWays {
+    Image drawn, computed;
+    bool are_same() const {
+        const auto a = drawn.floats(), b = computed.floats();
+        return std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+    }
+};
+
+BothWays both_ways(const EffectFolder& effects, const std::string& effect, const Capture& capture,
+                   Backend backend) {
+    const std::string look = look_of("{\"effect\": \"" + effect + "\"}");
+    Bench drawn(effects, look, {}, backend, {.draw_with = DrawWith::fragment});
+    Bench computed(effects, look, {}, backend, {.draw_with = DrawWith::compute});
+    BothWays both{drawn.color(capture), computed.color(capture)};
+    for (const DrawnPass& draw : computed.renderer().draws())
+        EXPECT_TRUE(draw.computes) << draw.pass << " " << draw.why_drawn;
+    return both;
+}
+
 TEST_P(DrawsAsComputeShaders, TreatDenormalFloatsAsFragmentsDo) {
     EffectFolder effects;
     effects.add("denormal",
@@ -190,14 +210,69 @@ TEST_P(DrawsAsComputeShaders, TreatDenormalFloatsAsFragmentsDo) {
     float value = uintBitsToFloat(uint(gl_FragCoord.x) << 16);
     out_color = vec4(value * 1e19 * 1e19, value > 0.0 ? 1.0 : 0.0, texelFetch(color, ivec2(gl_FragCoord.xy), 0).ba);
 })");
-    const std::string look = look_of(R"({"effect": "denormal"})");
-    const Capture capture = picture_of(16, 4, 1);
-    Bench drawn(effects, look, {}, GetParam(), {.draw_with = DrawWith::fragment});
-    Bench computed(effects, look, {}, GetParam(), {.draw_with = DrawWith::compute});
-    const Image a = drawn.color(capture), b = computed.color(capture);
-    EXPECT_TRUE(computed.renderer().draws().back().computes);
-    EXPECT_EQ(std::memcmp(a.floats().data(), b.floats().data(), a.floats().size_bytes()), 0)
-        << a.at(9, 0, 0) << " " << b.at(9, 0, 0) << ", " << a.at(9, 0, 1) << " " << b.at(9, 0, 1);
+    const BothWays both = both_ways(effects, "denormal", picture_of(16, 4, 1), GetParam());
+    EXPECT_TRUE(both.are_same()) << both.drawn.at(9, 0, 0) << " " << both.computed.at(9, 0, 0) << ", "
+                                 << both.drawn.at(9, 0, 1) << " " << both.computed.at(9, 0, 1);
+}
+
+TEST_P(DrawsAsComputeShaders, DivideTilesAsQuadsDoWhereAnEdgeGoesThroughCentres) {
+    // 0.5: the edges of odd tiles lie at 2.5, 7.5, ... texels; 0.77 and 5: at 38.5.
+    for (const char* const scale : {"0.5", "0.77", "0.3", "1.5"})
+        for (const char* const side : {"2", "3", "5", "7"}) {
+            EffectFolder effects;
+            effects.add("tiled",
+                        filled(R"("inputs": { "color": { "role": "color" } },
+        "outputs": { "color": { "role": "color" } },
+        "textures": { "marks": { "format": "r8", "tile": $side, "doc": "." },
+                      "part": { "format": "r32f", "scale": $scale, "clear": 0, "doc": "." } },
+        "tiles": { "chosen": { "of": "marks.r", "doc": "." } },
+        "passes": [
+            { "name": "mark", "shader": "main.frag", "reads": [], "writes": ["marks"], "defines": { "MARK": 1 } },
+            { "name": "part", "shader": "main.frag", "over": "chosen", "reads": [], "writes": ["part"],
+              "defines": { "PART": 1 } },
+            { "name": "show", "shader": "main.frag", "reads": ["part", "color"], "writes": ["color"] } ])",
+                               {{"side", side}, {"scale", scale}}),
+                        R"(void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+#if defined(MARK)
+    out_marks = (p.x * 7 + p.y * 3) % 5 < 2 ? 1.0 : 0.0;
+#elif defined(PART)
+    out_part = 1.0;
+#else
+    ivec2 at = ivec2((vec2(p) + 0.5) * part_size.xy / color_size.xy);
+    out_color = vec4(texelFetch(part, at, 0).r) + texelFetch(color, p, 0);
+#endif
+})");
+            EXPECT_TRUE(both_ways(effects, "tiled", picture_of(129, 65, 1), GetParam()).are_same())
+                << "scale " << scale << ", side " << side;
+        }
+}
+
+TEST_P(DrawsAsComputeShaders, StoreNanInBytesAsDrawsDo) {
+    for (const char* const format : {"r8", "rg8", "rgba8"}) {
+        EffectFolder effects;
+        effects.add("bytes",
+                    filled(R"("inputs": { "color": { "role": "color" } },
+        "outputs": { "color": { "role": "color" } },
+        "textures": { "bytes": { "format": "$format", "doc": "." } },
+        "passes": [
+            { "name": "make", "shader": "main.frag", "reads": [], "writes": ["bytes"], "defines": { "MAKE": 1 } },
+            { "name": "show", "shader": "main.frag", "reads": ["bytes", "color"], "writes": ["color"] } ])",
+                           {{"format", format}}),
+                    filled(R"(void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+#ifdef MAKE
+    // NaN left of column 3, then -infinity.
+    out_bytes = $value;
+#else
+    out_color = vec4(texelFetch(bytes, p, 0)) + texelFetch(color, p, 0);
+#endif
+})",
+                           {{"value", cast_of(format,
+                                              "vec4(log(float(p.x - 3)), sqrt(float(p.y - 2)), 1.0, "
+                                              "0.0 / float(p.x - 4))")}}));
+        EXPECT_TRUE(both_ways(effects, "bytes", picture_of(17, 9, 1), GetParam()).are_same()) << format;
+    }
 }
 
 ON_EACH_BACKEND(DrawsAsComputeShaders);
