@@ -1,6 +1,7 @@
 // Small things that text needs in several places.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,6 +26,11 @@ std::string lower_case(std::string_view text);
 std::string_view trimmed(std::string_view text);
 /// The pieces between the separators: one more than separators; pieces may be empty.
 std::vector<std::string_view> split(std::string_view text, char separator);
+/// The pieces would outlive a string that nothing holds.
+template <std::same_as<std::string> Text>
+std::string_view trimmed(Text&&) = delete;
+template <std::same_as<std::string> Text>
+std::vector<std::string_view> split(Text&&, char) = delete;
 /// "a, b and c" with `last` " and ".
 std::string joined(std::span<const std::string> parts, std::string_view last,
                    std::string_view between = ", ");

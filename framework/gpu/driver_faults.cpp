@@ -148,7 +148,8 @@ std::string chosen_vendors() {
 
 /// "580.159.04", of the kernel's module; "" without one.
 std::string nvidia_version(const fs::path& root) {
-    for (const std::string_view word : split(file_text(root / "proc/driver/nvidia/version"), ' '))
+    const std::string text = file_text(root / "proc/driver/nvidia/version");
+    for (const std::string_view word : split(text, ' '))
         if (!word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) && contains(word, "."))
             return std::string(word);
     return "";
