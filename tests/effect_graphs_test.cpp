@@ -26,9 +26,8 @@ Pipeline pipeline_of(const EffectManifest& manifest, const Values& fixed, const 
     for (const InputSpec& input : manifest.inputs) step.inputs[input.name] = {-1, input.role};
     for (const auto& [name, value] : fixed) step.values[name] = value;
     for (const auto& [name, values] : changes)
-        step.values[name] =
-            KeyedValue{{{kFirstFrame, {values.first, {}}}, {kSecondFrame, {values.second, {}}}},
-                       Ease{Ease::Kind::step}};
+        step.values[name] = KeyedValue{
+            {{kFirstFrame, {values.first, {}}}, {kSecondFrame, {values.second, {}}}}, Ease{Ease::Kind::step}};
     for (const auto& [name, value] : step.values) step.origins[name] = "the test";
     Pipeline pipeline;
     pipeline.steps.push_back(std::move(step));

@@ -195,9 +195,8 @@ aftershade::Image read_texture(gpu::Context& context, const GlTexture& texture, 
 }
 
 /// The capture with those images in memory that values are taken from.
-std::shared_ptr<const Capture::Data> with_values_in_memory(gpu::Context& context,
-                                                           const std::shared_ptr<const Capture::Data>& capture,
-                                                           const Pipeline& pipeline) {
+std::shared_ptr<const Capture::Data> with_values_in_memory(
+    gpu::Context& context, const std::shared_ptr<const Capture::Data>& capture, const Pipeline& pipeline) {
     std::shared_ptr<Capture::Data> filled;
     for (const std::string& role : roles_of_values(pipeline)) {
         const auto texture = capture->textures.find(role);

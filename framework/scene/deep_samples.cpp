@@ -99,7 +99,8 @@ DeepImage SceneRenderer::render_deep(int frame, double time, std::array<double, 
         std::vector<Hit> hits;
         for (int i = 0; i < kDeepRays; ++i) {
             const int column = i % kSide, row = i / kSide;
-            const dvec2 pixel(x + jitter_px[0] + (column + 0.5) / kSide, y + jitter_px[1] + (row + 0.5) / kSide);
+            const dvec2 pixel(x + jitter_px[0] + (column + 0.5) / kSide,
+                              y + jitter_px[1] + (row + 0.5) / kSide);
             const Ray ray = camera_ray(world.state().camera, pixel, dvec2(0));
             std::map<int, int> met;
             for (const Surface& surface : world.trace_through(ray, kMostSurfaces)) {
