@@ -149,8 +149,7 @@ void CaseTracer::add_step(const PipelineStep& step, const GoldenCase& test, Case
     if (step.mask) add_value("mask", text_of(*step.mask));
     for (const ParamSpec& spec : step.manifest->params) {
         std::string content;
-        if (spec.type->content)
-            for (const ParamValue& value : step.known_values(spec)) content += spec.type->content(value);
+        for (const ParamValue& value : step.known_values(spec)) content += spec.type->content(value);
         if (content.empty()) continue;
         const std::string name = step.name + "." + spec.name + " (content)";
         parts.origin.values[name] = short_hash(content);

@@ -4,9 +4,10 @@
 namespace aftershade {
 
 std::span<const ParamType> core_param_types() {
-    static constexpr ParamType types[] = {
-        kFloatParam, kIntParam,  kBoolParam,  kEnumParam, kAngleParam, kColorParam,   kVec2Param,
-        kVec3Param,  kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam, kTextParam,
+    static const ParamType types[] = {
+        ParamType::float_, ParamType::int_,  ParamType::bool_,   ParamType::enum_, ParamType::angle,
+        ParamType::color,  ParamType::vec2,  ParamType::vec3,    ParamType::vec4,  ParamType::curve,
+        ParamType::file,   ParamType::table, ParamType::objects, ParamType::text,
     };
     return types;
 }

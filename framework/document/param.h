@@ -19,17 +19,15 @@
 
 namespace aftershade {
 
-struct ParamTypeTraits;
-extern const ParamTypeTraits kFloatParam, kIntParam, kBoolParam, kEnumParam, kAngleParam, kColorParam,
-    kVec2Param, kVec3Param, kVec4Param, kCurveParam, kFileParam, kTableParam, kObjectsParam, kTextParam;
+class AbstractParamType;
 
 /// One of the types that a table lists (core_param_types()); framework/document/param_type.h has what a type
 /// is. The named ones are those that code means by themselves. [value type]
 class ParamType {
 public:
-    constexpr ParamType(const ParamTypeTraits& traits) : traits_(&traits) {}
-    const ParamTypeTraits* operator->() const { return traits_; }
-    const ParamTypeTraits& operator*() const { return *traits_; }
+    constexpr ParamType(const AbstractParamType& type) : type_(&type) {}
+    const AbstractParamType* operator->() const { return type_; }
+    const AbstractParamType& operator*() const { return *type_; }
     bool operator==(const ParamType&) const = default;
 
     static const ParamType float_, int_, bool_, enum_, angle, color, vec2, vec3, vec4, curve, file, table;
@@ -37,14 +35,8 @@ public:
     static const ParamType text;     ///< a word for the host alone
 
 private:
-    const ParamTypeTraits* traits_;
+    const AbstractParamType* type_;
 };
-
-inline constexpr ParamType ParamType::float_{kFloatParam}, ParamType::int_{kIntParam},
-    ParamType::bool_{kBoolParam}, ParamType::enum_{kEnumParam}, ParamType::angle{kAngleParam},
-    ParamType::color{kColorParam}, ParamType::vec2{kVec2Param}, ParamType::vec3{kVec3Param},
-    ParamType::vec4{kVec4Param}, ParamType::curve{kCurveParam}, ParamType::file{kFileParam},
-    ParamType::table{kTableParam}, ParamType::objects{kObjectsParam}, ParamType::text{kTextParam};
 
 /// The types that need only core, in the order of messages and schemas. [thread-safe]
 std::span<const ParamType> core_param_types();

@@ -21,7 +21,10 @@ ParamValue interpolate(const ParamSpec& spec, const ParamValue& a, const ParamVa
 }
 
 ParamValue scale_pixels(const ParamSpec& spec, const ParamValue& value, double factor) {
-    if (spec.type->scale) return spec.type->scale(spec, value, factor);
+    return spec.type->scale(spec, value, factor);
+}
+
+ParamValue AbstractParamType::scale(const ParamSpec& spec, const ParamValue& value, double factor) const {
     if (spec.unit != "px" || !is_block_type(spec.type)) return value;
     std::vector<double> numbers = numbers_of(spec, value);
     for (double& number : numbers) number = scaled_px(spec, number, factor);

@@ -71,7 +71,11 @@ std::string format_value(const ParamValue& value) {
 }
 
 std::string format_value(const ParamSpec& spec, const ParamValue& value) {
-    return spec.type->format ? spec.type->format(spec, value) : format_value(value);
+    return spec.type->format(spec, value);
+}
+
+std::string AbstractParamType::format(const ParamSpec&, const ParamValue& value) const {
+    return format_value(value);
 }
 
 std::string range_text(const ParamSpec& spec) {

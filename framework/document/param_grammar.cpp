@@ -108,7 +108,7 @@ Block declaration_of(ParamType type, const Block& column) {
     block.keys.push_back(std::move(value));
     if (type->has_range)
         for (Key& key : range_keys()) block.keys.push_back(std::move(key));
-    if (type->declare) type->declare(block, column);
+    type->declare(block, column);
     return block;
 }
 

@@ -58,8 +58,7 @@ bool read_values(const SpecReader& reader, SpecOwner owner, ParamSpec& spec) {
     if (identity_node)
         spec.identity = parse_param_value(spec, *identity_node, label + ".identity", reader.diagnostics);
     if (!value) return false;
-    const auto check = spec.type->check_default;
-    return !check || check(spec, written, label, reader.diagnostics);
+    return spec.type->check_default(spec, written, label, reader.diagnostics);
 }
 
 }  // namespace
@@ -82,11 +81,11 @@ bool is_ocio_file(const ParamSpec& spec) {
 }
 
 bool is_param_texture(ParamType type) {
-    return type->texture.size != nullptr;
+    return type->texture != nullptr;
 }
 
 bool is_param_buffer(ParamType type) {
-    return type->table.rows != nullptr;
+    return type->table != nullptr;
 }
 
 int component_count(ParamType type) {
@@ -108,7 +107,7 @@ std::optional<ParamSpec> read_spec(const std::string& name, const std::string& l
     spec.type = *std::ranges::find(types, text_of(node, "type"), [](ParamType known) { return known->name; });
     const SpecReader reader{node, label, types, diagnostics};
     read_range(reader, spec);
-    if (spec.type->read_declaration) spec.type->read_declaration(reader, spec);
+    spec.type->read_declaration(reader, spec);
     if (owner == SpecOwner::manifest) read_manifest_keys(node, spec);
     if (diagnostics.error_count() > errors_before || !read_values(reader, owner, spec)) return std::nullopt;
     return spec;

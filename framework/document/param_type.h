@@ -1,6 +1,6 @@
-// The type of a parameter: one table entry has everything that differs between types. A new type is a file
-// like those of framework/document/param_types and a line in the list of core_param_types(). A type that
-// needs more than core has its line in framework/effect/param_types.cpp.
+// The type of a parameter: one class has everything that differs between types. A new type is a file like
+// those of framework/document/param_types and a name in the list of core_param_types(). A type that needs
+// more than `document` has its name in framework/effect/param_types.cpp.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -58,76 +58,91 @@ struct TexelSize {
     int channels = 1;  ///< 1 or 4, each a 32-bit float
 };
 
-/// Traits of a resource's texture, which texelFetch alone reads.
-struct ParamTextureTraits {
-    std::string_view label;  ///< after the parameter's name, in the frame graph
-    TexelSize (*size)(const ParamValue& value) = nullptr;
+/// The texture of a resource, which texelFetch alone reads.
+class AbstractParamTexture {
+public:
+    virtual std::string_view label() const { return ""; }  ///< after the parameter's name, in the frame graph
+    virtual TexelSize size(const ParamValue& value) const = 0;
     /// Rows from the top, channels interleaved.
-    std::vector<float> (*texels)(const ParamSpec& spec, const ParamValue& value) = nullptr;
+    virtual std::vector<float> texels(const ParamSpec& spec, const ParamValue& value) const = 0;
     /// Declares the sampler, and what reads it without the table.
-    std::string (*glsl)(const ParamSpec& spec, int binding) = nullptr;
+    virtual std::string glsl(const ParamSpec& spec, int binding) const = 0;
+
+protected:
+    ~AbstractParamTexture() = default;
 };
 
-/// Traits of a resource's storage block, looked up by object. Its rows have `columns` of the spec.
-struct ParamTableTraits {
-    std::size_t (*entries)(const ParamValue& value) = nullptr;  ///< count_entries() of its rows
-    TableValue (*rows)(const ParamValue& value) = nullptr;
-    std::string_view lookup;  ///< after the parameter's name: the function that returns an object's row
-    std::string (*glsl)(const ParamSpec& spec) = nullptr;  ///< what follows that function; may be null
+/// The storage block of a resource, looked up by object. Its rows have `columns` of the spec.
+class AbstractParamTable {
+public:
+    virtual TableValue rows(const ParamValue& value) const = 0;
+    virtual std::size_t entries(const ParamValue& value) const;  ///< count_entries() of its rows
+    /// After the parameter's name: the function that returns an object's row.
+    virtual std::string_view lookup() const { return ""; }
+    virtual std::string glsl(const ParamSpec&) const { return ""; }  ///< what follows that function
+
+protected:
+    ~AbstractParamTable() = default;
 };
 
-/// Functions that are null have the behaviour that their comment names.
 struct ParamTypeTraits {
-    std::string_view name;    ///< as manifests spell it
-    std::string_view phrase;  ///< in messages; "": the name with its article
+    std::string_view name{};    ///< as manifests spell it
+    std::string_view phrase{};  ///< in messages; "": the name with its article
     ParamHome home = ParamHome::block;
-    int components = 1;          ///< block
-    std::string_view glsl_type;  ///< block
-    bool is_integer = false;     ///< block: shaders have integers, or a bool of 32 bits
-    bool has_range = false;      ///< unit, min, max and a slider's ends, of each number
-    bool is_scalar = false;      ///< one number
-    bool is_continuous = false;  ///< block: between two keys lie the values between theirs
-    bool is_choice = false;      ///< one of the spec's `values`
-    bool has_default = true;     ///< declarations must give one; else an empty object is read
-    bool has_columns = false;    ///< declarations name the columns
-    std::string_view usual_unit;
+    int components = 1;            ///< block
+    std::string_view glsl_type{};  ///< block
+    bool is_integer = false;       ///< block: shaders have integers, or a bool of 32 bits
+    bool has_range = false;        ///< unit, min, max and a slider's ends, of each number
+    bool is_scalar = false;        ///< one number
+    bool is_continuous = false;    ///< block: between two keys lie the values between theirs
+    bool is_choice = false;        ///< one of the spec's `values`
+    bool has_default = true;       ///< declarations must give one; else an empty object is read
+    bool has_columns = false;      ///< declarations name the columns
+    std::string_view usual_unit{};
+    const AbstractParamTexture* texture = nullptr;  ///< resource; nullptr: none
+    const AbstractParamTable* table = nullptr;      ///< resource; nullptr: none
+    bool has_defines = false;                       ///< resource: defines() of a value
+};
+
+/// A type. There is one object of each, a constant. [thread-safe]
+class AbstractParamType : public ParamTypeTraits {
+public:
+    constexpr explicit AbstractParamType(const ParamTypeTraits& traits) : ParamTypeTraits(traits) {}
 
     /// Adds the keys that only declarations of this type have, and rules; `column` declares a table's column.
-    /// Null: none.
-    void (*declare)(grammar::Block& declaration, const grammar::Block& column) = nullptr;
-    /// Reads the type's own keys, or sets what follows from the type; null: nothing.
-    void (*read_declaration)(const SpecReader& reader, ParamSpec& spec) = nullptr;
-    /// Whether a manifest's default may be that; reports what is wrong. Null: any value.
-    bool (*check_default)(const ParamSpec& spec, const Node& node, const std::string& label,
-                          Diagnostics& diagnostics) = nullptr;
-    std::optional<ParamValue> (*parse)(const ValueReader& reader, const Node& node) = nullptr;
-    nlohmann::ordered_json (*schema)(const ParamSpec& spec, const schema::LiteralParts& parts) = nullptr;
+    virtual void declare(grammar::Block&, const grammar::Block& column) const;
+    /// Reads the type's own keys, or sets what follows from the type.
+    virtual void read_declaration(const SpecReader&, ParamSpec&) const {}
+    /// Whether a manifest's default may be that; reports what is wrong.
+    virtual bool check_default(const ParamSpec&, const Node&, const std::string& label, Diagnostics&) const;
+    virtual std::optional<ParamValue> parse(const ValueReader&, const Node&) const = 0;
+    virtual nlohmann::ordered_json literal_schema(const ParamSpec&, const schema::LiteralParts&) const = 0;
 
-    /// As a document would write it; null: as format_value() without a spec.
-    std::string (*format)(const ParamSpec& spec, const ParamValue& value) = nullptr;
-    /// For people, without unit; null: the name.
-    std::string (*type_text)(const ParamSpec& spec) = nullptr;
-    /// For people, without unit; null: as `format`.
-    std::string (*default_text)(const ParamSpec& spec) = nullptr;
-    /// The type's own keys for `describe --json`; null: none.
-    nlohmann::ordered_json (*describe)(const ParamSpec& spec) = nullptr;
+    /// As a document would write it.
+    virtual std::string format(const ParamSpec&, const ParamValue&) const;
+    /// For people, without unit.
+    virtual std::string type_text(const ParamSpec&) const;
+    virtual std::string default_text(const ParamSpec&) const;
+    /// The type's own keys for `describe --json`.
+    virtual nlohmann::ordered_json describe(const ParamSpec&) const;
 
-    // block: must be there
-    std::vector<double> (*numbers)(const ParamSpec& spec, const ParamValue& value) = nullptr;
-    ParamValue (*of_numbers)(const ParamSpec& spec, const std::vector<double>& numbers) = nullptr;
-    /// block; null: the limits.
-    std::vector<SweepValue> (*sweep)(const ParamSpec& spec) = nullptr;
+    /// block: numbers_of() and value_of_numbers(), which must be there; sweep_values(), without it the
+    /// limits.
+    virtual std::vector<double> numbers(const ParamSpec&, const ParamValue&) const;
+    virtual ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) const;
+    virtual std::vector<SweepValue> sweep(const ParamSpec&) const;
 
-    /// resource; null: the value stays. See scale_pixels().
-    ParamValue (*scale)(const ParamSpec& spec, const ParamValue& value, double factor) = nullptr;
-    ParamTextureTraits texture;
-    ParamTableTraits table;
-    /// resource: preprocessor lines that depend on the value; null: none. Each form is one program.
-    std::string (*defines)(const ParamSpec& spec, const ParamValue& value) = nullptr;
-    /// How far light goes that moves as the value says, mm; null: it says nothing of that.
-    double (*length_mm)(const ParamValue& value) = nullptr;
-    /// The content that the value takes from files that documents name; null: none.
-    std::string (*content)(const ParamValue& value) = nullptr;
+    /// scale_pixels(); without it numbers in px are scaled.
+    virtual ParamValue scale(const ParamSpec&, const ParamValue&, double factor) const;
+    /// resource: preprocessor lines that depend on the value. Each form is one program.
+    virtual std::string defines(const ParamSpec&, const ParamValue&) const { return ""; }
+    /// How far light goes that moves as the value says, mm; 0: it says nothing of that.
+    virtual double length_mm(const ParamValue&) const { return 0; }
+    /// The content that the value takes from files that documents name.
+    virtual std::string content(const ParamValue&) const { return ""; }
+
+protected:
+    ~AbstractParamType() = default;
 };
 
 /// "40 mm", or "40" where the unit is "".

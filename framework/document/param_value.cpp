@@ -1,7 +1,9 @@
 #include <cassert>
+#include <nlohmann/json.hpp>
 #include <typeinfo>
 
 #include "framework/document/param_type.h"
+#include "framework/document/table_keys.h"
 #include "framework/document/units.h"
 
 namespace aftershade {
@@ -57,6 +59,36 @@ std::optional<ParamValue> parse_param_value(const ParamSpec& spec, const Node& n
     return spec.type->parse({spec, label, diagnostics}, node);
 }
 
+void AbstractParamType::declare(grammar::Block&, const grammar::Block&) const {}
+
+bool AbstractParamType::check_default(const ParamSpec&, const Node&, const std::string&, Diagnostics&) const {
+    return true;
+}
+
+std::string AbstractParamType::type_text(const ParamSpec&) const {
+    return std::string(name);
+}
+
+std::string AbstractParamType::default_text(const ParamSpec& spec) const {
+    return format(spec, spec.default_value);
+}
+
+nlohmann::ordered_json AbstractParamType::describe(const ParamSpec&) const {
+    return nlohmann::ordered_json::object();
+}
+
+std::vector<double> AbstractParamType::numbers(const ParamSpec&, const ParamValue&) const {
+    return {};
+}
+
+ParamValue AbstractParamType::of_numbers(const ParamSpec&, const std::vector<double>&) const {
+    return {};
+}
+
+std::size_t AbstractParamTable::entries(const ParamValue& value) const {
+    return count_entries(rows(value).rows);
+}
+
 std::vector<double> numbers_of(const ParamSpec& spec, const ParamValue& value) {
     assert(is_block_type(spec.type));
     return spec.type->numbers(spec, value);
@@ -69,7 +101,10 @@ ParamValue value_of_numbers(const ParamSpec& spec, const std::vector<double>& nu
 
 std::vector<SweepValue> sweep_values(const ParamSpec& spec) {
     if (!is_block_type(spec.type)) return {};
-    if (spec.type->sweep) return spec.type->sweep(spec);
+    return spec.type->sweep(spec);
+}
+
+std::vector<SweepValue> AbstractParamType::sweep(const ParamSpec& spec) const {
     std::vector<SweepValue> values;
     for (const auto& [end, limit] : {std::pair("min", spec.min), {"max", spec.max}}) {
         if (!limit) continue;

@@ -75,7 +75,7 @@ void define_variable(json& definitions) {
 
 json literal(const ParamSpec& spec, Variables variables) {
     const LiteralParts parts(variables);
-    return parts.part(spec.type->schema(spec, parts));
+    return parts.part(spec.type->literal_schema(spec, parts));
 }
 
 json LiteralParts::part(json form) const {

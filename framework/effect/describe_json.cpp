@@ -26,7 +26,7 @@ json param_json(const ParamSpec& spec) {
     if (!spec.section.empty()) entry["section"] = spec.section;
     if (spec.is_advanced) entry["advanced"] = true;
     if (is_block_type(spec.type)) entry["bind"] = spec.bind == ParamBind::define ? "define" : "uniform";
-    if (spec.type->describe) entry.update(spec.type->describe(spec));
+    entry.update(spec.type->describe(spec));
     if (!spec.type->has_columns) return entry;
     for (const ParamSpec& column : spec.columns) entry["columns"][column.name] = param_json(column);
     return entry;

@@ -220,15 +220,11 @@ void describe_inside(const EffectManifest& manifest, std::ostream& out) {
 }  // namespace
 
 std::string type_text(const ParamSpec& spec) {
-    const auto own = spec.type->type_text;
-    const std::string text = own ? own(spec) : std::string(spec.type->name);
-    return text + (spec.unit.empty() ? "" : ", " + spec.unit);
+    return spec.type->type_text(spec) + (spec.unit.empty() ? "" : ", " + spec.unit);
 }
 
 std::string default_text(const ParamSpec& spec) {
-    const auto own = spec.type->default_text;
-    const std::string value = own ? own(spec) : format_value(spec, spec.default_value);
-    return (spec.from.empty() ? "" : spec.from + ", else ") + value +
+    return (spec.from.empty() ? "" : spec.from + ", else ") + spec.type->default_text(spec) +
            (spec.unit.empty() ? "" : " " + spec.unit);
 }
 

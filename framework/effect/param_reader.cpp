@@ -14,9 +14,9 @@ bool is_another_than_0(const ParamValue& number) {
 ParamValue aspect_of(const ParamSpec& spec, const ParamValue& value, ParamAspect aspect) {
     switch (aspect) {
         case ParamAspect::value: break;
-        case ParamAspect::table_entries: return std::int64_t(spec.type->table.entries(value));
+        case ParamAspect::table_entries: return std::int64_t(spec.type->table->entries(value));
         case ParamAspect::texture_size: {
-            const TexelSize size = spec.type->texture.size(value);
+            const TexelSize size = spec.type->texture->size(value);
             return std::vector<double>{double(size.width), double(size.height), double(size.channels)};
         }
         case ParamAspect::defines: return spec.type->defines(spec, value);

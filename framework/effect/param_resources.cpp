@@ -163,9 +163,9 @@ gpu::TextureFormat param_texture_format(int channels) {
 }
 
 ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value) {
-    const TexelSize size = spec.type->texture.size(value);
+    const TexelSize size = spec.type->texture->size(value);
     return {size.width, size.height, 1, param_texture_format(size.channels),
-            spec.type->texture.texels(spec, value)};
+            spec.type->texture->texels(spec, value)};
 }
 
 ParamTexture file_texture(const ParamFile& file) {

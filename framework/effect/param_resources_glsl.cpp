@@ -143,7 +143,7 @@ std::string table_glsl(const ParamSpec& spec, const std::string& function, int b
 }  // namespace
 
 std::string param_sampler_glsl(const ParamSpec& spec, const ParamFile& file, int binding) {
-    if (is_param_texture(spec.type)) return spec.type->texture.glsl(spec, binding);
+    if (is_param_texture(spec.type)) return spec.type->texture->glsl(spec, binding);
     if (const auto* lut = std::get_if<Lut>(&file)) return lut_glsl(spec, *lut, binding);
     if (const auto* transform = std::get_if<ColorTransform>(&file))
         return transform_glsl(spec, *transform, binding);
@@ -151,9 +151,8 @@ std::string param_sampler_glsl(const ParamSpec& spec, const ParamFile& file, int
 }
 
 std::string param_table_glsl(const ParamSpec& spec, int binding, bool has_rows) {
-    const ParamTableTraits& table = spec.type->table;
-    return table_glsl(spec, spec.name + std::string(table.lookup), binding, has_rows) +
-           (table.glsl ? table.glsl(spec) : "");
+    const AbstractParamTable& table = *spec.type->table;
+    return table_glsl(spec, spec.name + std::string(table.lookup()), binding, has_rows) + table.glsl(spec);
 }
 
 }  // namespace aftershade

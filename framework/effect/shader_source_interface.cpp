@@ -123,7 +123,7 @@ private:
             const std::string name = upper_case(spec.name);
             for (std::size_t i = 0; i < spec.values.size(); ++i)
                 text_ << "#define " << name << "_" << upper_case(spec.values[i]) << " " << i << "\n";
-            if (spec.type->defines) text_ << context_.params.defines(spec);
+            if (spec.type->has_defines) text_ << context_.params.defines(spec);
             if (spec.bind == ParamBind::define)
                 text_ << "#define " << name << " " << define_value(spec, context_.params.get(spec.name))
                       << "\n";

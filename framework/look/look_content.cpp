@@ -103,8 +103,7 @@ std::vector<fs::path> files_of_pipeline(const Pipeline& pipeline, const fs::path
 std::string content_of_values(const PipelineStep& step) {
     std::string text;
     for (const ParamSpec& spec : step.manifest->params)
-        if (spec.type->content)
-            for (const ParamValue& value : step.known_values(spec)) text += spec.type->content(value);
+        for (const ParamValue& value : step.known_values(spec)) text += spec.type->content(value);
     for (const fs::path& file : files_of_values(step)) add_file(file, text);
     return text;
 }

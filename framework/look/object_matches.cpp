@@ -105,7 +105,7 @@ ObjectMatches::ObjectMatches(const Pipeline& pipeline) {
             for (const ParamSpec& spec : step.manifest->params)
                 if (is_param_buffer(spec.type) && step.values.contains(spec.name))
                     for (const ParamValue& value : step.known_values(spec))
-                        for (const auto& [key, row] : spec.type->table.rows(value).rows)
+                        for (const auto& [key, row] : spec.type->table->rows(value).rows)
                             add(step.places.at(spec.name), step.name + "." + spec.name, {key}, kObjectIdRole);
         if (step.mask && step.mask->names_objects())
             add(step.mask->place, "the mask of step '" + step.name + "'", step.mask->objects,
@@ -129,7 +129,7 @@ void ObjectMatches::add_entries_of_scattering(const PipelineStep& step) {
         if (!spec.warn_if_empty) continue;
         bool is_empty = true;
         for (const ParamValue& value : step.known_values(spec))
-            for (const auto& [key, row] : spec.type->table.rows(value).rows) {
+            for (const auto& [key, row] : spec.type->table->rows(value).rows) {
                 is_empty = false;
                 const std::vector<IdRange> more = id_ranges({&key, 1});
                 objects.insert(objects.end(), more.begin(), more.end());

@@ -90,7 +90,7 @@ std::vector<std::string> Pipeline::object_names() const {
         for (const ParamSpec& spec : step.manifest->params)
             for (const ParamValue& value : step.known_values(spec))
                 if (is_param_buffer(spec.type))
-                    for (const auto& [key, row] : spec.type->table.rows(value).rows) add(key);
+                    for (const auto& [key, row] : spec.type->table->rows(value).rows) add(key);
     return names;
 }
 

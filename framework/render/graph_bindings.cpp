@@ -52,7 +52,7 @@ public:
         if (binding.given == value) return;
         if (gpu::Buffer* buffer = binding.buffer ? executor_.buffer(*binding.buffer) : nullptr)
             buffer->write(
-                table_buffer(*binding.spec, binding.spec->type->table.rows(value), object_id_of_name));
+                table_buffer(*binding.spec, binding.spec->type->table->rows(value), object_id_of_name));
         if (gpu::Texture* texture = binding.texture ? executor_.texture(*binding.texture) : nullptr)
             upload(texture_of(binding, value), *texture);
         binding.given = value;

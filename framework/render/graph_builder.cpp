@@ -299,7 +299,7 @@ void GraphBuilder::declare_params(StepBuild& build) {
         if (is_param_texture(spec.type)) {
             const TexelSize size = build.params.texture_size(spec);
             binding.texture =
-                graph_.import_texture(name + std::string(spec.type->texture.label),
+                graph_.import_texture(name + std::string(spec.type->texture->label()),
                                       {size.width, size.height, param_texture_format(size.channels)});
         } else if (is_file_type(spec.type) && !std::holds_alternative<std::monostate>(files.at(spec.name))) {
             const ParamTexture texture = file_texture(files.at(spec.name));

@@ -143,80 +143,6 @@ private:
     ScatteringValue value_;
 };
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    return ScatteringValueReader(reader).read(node);
-}
-
-void declare(grammar::Block& declaration, const grammar::Block&) {
-    declaration.keys.push_back(grammar::optional(
-        "per_metre", grammar::text(),
-        "Parameter with the mm of the profile for each metre of the capture: warn where by it the light of "
-        "no pixel goes 0.1 px far."));
-}
-
-void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    if (const Node* const per_metre = reader.node.find("per_metre")) spec.per_metre = per_metre->string;
-    spec.columns = {column("index", ParamType::int_), column("d", ParamType::vec3),
-                    column("direct", ParamType::vec3), column("falloff", ParamType::vec3),
-                    column("reach", ParamType::float_)};
-}
-
-schema::json literal(const ParamSpec&, const schema::LiteralParts& parts) {
-    grammar::SchemaScope scope;
-    scope.variables = parts.variables();
-    const schema::json form = scope.of(scattering_object_block());
-    const schema::json profile = parts.part(schema::any_of({schema::text(), form}));
-    schema::json row = parts.keyed_row({{kRowKey, profile}});
-    row["required"] = {kRowKey};
-    schema::json rows = schema::object(
-        {{"default", profile}, {"rows", parts.part(schema::array_of(parts.part(std::move(row))))}},
-        {"default"});
-    return schema::any_of({schema::text(), form, std::move(rows)});
-}
-
-std::string type_text(const ParamSpec&) {
-    return "scattering profile, by object too";
-}
-
-std::size_t entries(const ParamValue& value) {
-    return count_entries(content_of(value).rows);
-}
-
-TableValue rows(const ParamValue& value) {
-    return scattering_table(content_of(value));
-}
-
-TexelSize texture_size(const ParamValue& value) {
-    return {kScatteringSamples, kScatteringRows * int(scattering_profiles_of(content_of(value)).size()), 4};
-}
-
-std::vector<float> texels(const ParamSpec&, const ParamValue& value) {
-    const std::vector<ScatteringProfile> profiles = scattering_profiles_of(content_of(value));
-    constexpr std::size_t kRow = std::size_t(kScatteringSamples) * 4;
-    std::vector<float> made(profiles.size() * kScatteringRows * kRow);
-    const auto put = [&](std::size_t row, std::size_t column, const Rgb& rgb) {
-        for (std::size_t c = 0; c < 3; ++c) made[row * kRow + column * 4 + c] = float(rgb[c]);
-    };
-    for (std::size_t i = 0; i < profiles.size(); ++i) {
-        const ScatteringCurves curves = scattering_curves(profiles[i]);
-        for (std::size_t k = 0; k < kScatteringSamples; ++k) {
-            put(4 * i, k, curves.radial[k]);
-            put(4 * i + 1, k, curves.within[k]);
-            put(4 * i + 2, k, curves.line[k]);
-        }
-        const auto gaussians = profiles[i].as_gaussians();
-        for (std::size_t k = 0; k < ScatteringProfile::kMaxGaussians; ++k) {
-            put(4 * i + 3, 2 * k, k < gaussians.size() ? gaussians[k].variance_mm2 : Rgb{1, 1, 1});
-            put(4 * i + 3, 2 * k + 1, k < gaussians.size() ? gaussians[k].weight : Rgb{});
-        }
-    }
-    return made;
-}
-
-std::string sampler_glsl(const ParamSpec& spec, int binding) {
-    return "layout(binding = " + std::to_string(binding) + ") uniform sampler2D " + spec.name + "_curves;\n";
-}
-
 constexpr std::string_view kScattering = R"(#define $upper_GAUSSIANS $gaussians
 vec3 $sample($row row, int kind, float r) {
     float at = sqrt(clamp(r / row.reach, 0.0, 1.0)) * $last;
@@ -230,58 +156,136 @@ vec3 $variance($row row, int k) { return texelFetch($curves, ivec2(2 * k, 4 * ro
 vec3 $weight($row row, int k) { return texelFetch($curves, ivec2(2 * k + 1, 4 * row.index + 3), 0).rgb; }
 )";
 
-std::string table_glsl(const ParamSpec& spec) {
-    std::map<std::string, std::string> values = {
-        {"upper_GAUSSIANS", upper_case(spec.name) + "_GAUSSIANS"},
-        {"gaussians", std::to_string(ScatteringProfile::kMaxGaussians)},
-        {"row", camel_case(spec.name) + "Row"},
-        {"last", glsl_float(kScatteringSamples - 1)}};
-    for (const char* part : {"curves", "sample", "radial", "within", "line", "variance", "weight"})
-        values[part] = spec.name + "_" + part;
-    return filled(kScattering, values);
-}
+class ScatteringTexture final : public AbstractParamTexture {
+public:
+    std::string_view label() const override { return ".curves"; }
 
-std::string defines(const ParamSpec& spec, const ParamValue& value) {
-    return "#define " + upper_case(spec.name) + "_IS_BURLEY " +
-           (is_burley(content_of(value)) ? "1\n" : "0\n");
-}
-
-/// d of the channel in which it goes farthest, of all profiles.
-double length_mm(const ParamValue& value) {
-    double longest = 0;
-    for (const ScatteringProfile& profile : scattering_profiles_of(content_of(value)))
-        for (const double d_mm : profile.fitted_d_mm()) longest = std::max(longest, d_mm);
-    return longest;
-}
-
-std::string content(const ParamValue& value) {
-    std::string text;
-    for (ScatteringProfile profile : scattering_profiles_of(content_of(value))) {
-        profile.name.clear();
-        text += "\n" + format_scattering_profile(profile);
+    TexelSize size(const ParamValue& value) const override {
+        return {kScatteringSamples, kScatteringRows * int(scattering_profiles_of(content_of(value)).size()),
+                4};
     }
-    return text;
-}
 
-constexpr ParamTypeTraits type() {
-    ParamTypeTraits traits;
-    traits.name = "scattering_profile";
-    traits.home = ParamHome::resource;
-    traits.declare = declare;
-    traits.read_declaration = read_declaration;
-    traits.parse = parse;
-    traits.schema = literal;
-    traits.type_text = type_text;
-    traits.texture = {".curves", texture_size, texels, sampler_glsl};
-    traits.table = {entries, rows, "", table_glsl};
-    traits.defines = defines;
-    traits.length_mm = length_mm;
-    traits.content = content;
-    return traits;
-}
+    std::vector<float> texels(const ParamSpec&, const ParamValue& value) const override {
+        const std::vector<ScatteringProfile> profiles = scattering_profiles_of(content_of(value));
+        constexpr std::size_t kRow = std::size_t(kScatteringSamples) * 4;
+        std::vector<float> made(profiles.size() * kScatteringRows * kRow);
+        const auto put = [&](std::size_t row, std::size_t column, const Rgb& rgb) {
+            for (std::size_t c = 0; c < 3; ++c) made[row * kRow + column * 4 + c] = float(rgb[c]);
+        };
+        for (std::size_t i = 0; i < profiles.size(); ++i) {
+            const ScatteringCurves curves = scattering_curves(profiles[i]);
+            for (std::size_t k = 0; k < kScatteringSamples; ++k) {
+                put(4 * i, k, curves.radial[k]);
+                put(4 * i + 1, k, curves.within[k]);
+                put(4 * i + 2, k, curves.line[k]);
+            }
+            const auto gaussians = profiles[i].as_gaussians();
+            for (std::size_t k = 0; k < ScatteringProfile::kMaxGaussians; ++k) {
+                put(4 * i + 3, 2 * k, k < gaussians.size() ? gaussians[k].variance_mm2 : Rgb{1, 1, 1});
+                put(4 * i + 3, 2 * k + 1, k < gaussians.size() ? gaussians[k].weight : Rgb{});
+            }
+        }
+        return made;
+    }
+
+    std::string glsl(const ParamSpec& spec, int binding) const override {
+        return "layout(binding = " + std::to_string(binding) + ") uniform sampler2D " + spec.name +
+               "_curves;\n";
+    }
+};
+
+class ScatteringTable final : public AbstractParamTable {
+public:
+    std::size_t entries(const ParamValue& value) const override {
+        return count_entries(content_of(value).rows);
+    }
+
+    TableValue rows(const ParamValue& value) const override { return scattering_table(content_of(value)); }
+
+    std::string glsl(const ParamSpec& spec) const override {
+        std::map<std::string, std::string> values = {
+            {"upper_GAUSSIANS", upper_case(spec.name) + "_GAUSSIANS"},
+            {"gaussians", std::to_string(ScatteringProfile::kMaxGaussians)},
+            {"row", camel_case(spec.name) + "Row"},
+            {"last", glsl_float(kScatteringSamples - 1)}};
+        for (const char* part : {"curves", "sample", "radial", "within", "line", "variance", "weight"})
+            values[part] = spec.name + "_" + part;
+        return filled(kScattering, values);
+    }
+};
+
+constexpr ScatteringTexture kTexture;
+constexpr ScatteringTable kTable;
+
+class ScatteringType final : public AbstractParamType {
+public:
+    constexpr ScatteringType()
+        : AbstractParamType({.name = "scattering_profile",
+                             .home = ParamHome::resource,
+                             .texture = &kTexture,
+                             .table = &kTable,
+                             .has_defines = true}) {}
+
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        return ScatteringValueReader(reader).read(node);
+    }
+
+    void declare(grammar::Block& declaration, const grammar::Block&) const override {
+        declaration.keys.push_back(grammar::optional("per_metre", grammar::text(),
+                                                     "Parameter with the mm of the profile for each metre of "
+                                                     "the capture: warn where by it the light of "
+                                                     "no pixel goes 0.1 px far."));
+    }
+
+    void read_declaration(const SpecReader& reader, ParamSpec& spec) const override {
+        if (const Node* const per_metre = reader.node.find("per_metre")) spec.per_metre = per_metre->string;
+        spec.columns = {column("index", ParamType::int_), column("d", ParamType::vec3),
+                        column("direct", ParamType::vec3), column("falloff", ParamType::vec3),
+                        column("reach", ParamType::float_)};
+    }
+
+    schema::json literal_schema(const ParamSpec&, const schema::LiteralParts& parts) const override {
+        grammar::SchemaScope scope;
+        scope.variables = parts.variables();
+        const schema::json form = scope.of(scattering_object_block());
+        const schema::json profile = parts.part(schema::any_of({schema::text(), form}));
+        schema::json row = parts.keyed_row({{kRowKey, profile}});
+        row["required"] = {kRowKey};
+        schema::json rows = schema::object(
+            {{"default", profile}, {"rows", parts.part(schema::array_of(parts.part(std::move(row))))}},
+            {"default"});
+        return schema::any_of({schema::text(), form, std::move(rows)});
+    }
+
+    std::string type_text(const ParamSpec&) const override { return "scattering profile, by object too"; }
+
+    std::string defines(const ParamSpec& spec, const ParamValue& value) const override {
+        return "#define " + upper_case(spec.name) + "_IS_BURLEY " +
+               (is_burley(content_of(value)) ? "1\n" : "0\n");
+    }
+
+    /// d of the channel in which it goes farthest, of all profiles.
+    double length_mm(const ParamValue& value) const override {
+        double longest = 0;
+        for (const ScatteringProfile& profile : scattering_profiles_of(content_of(value)))
+            for (const double d_mm : profile.fitted_d_mm()) longest = std::max(longest, d_mm);
+        return longest;
+    }
+
+    std::string content(const ParamValue& value) const override {
+        std::string text;
+        for (ScatteringProfile profile : scattering_profiles_of(content_of(value))) {
+            profile.name.clear();
+            text += "\n" + format_scattering_profile(profile);
+        }
+        return text;
+    }
+};
+
+constexpr ScatteringType kType;
 
 }  // namespace
 
-constinit const ParamTypeTraits kScatteringParam = type();
+constinit const ParamType kScatteringParam{kType};
 
 }  // namespace aftershade

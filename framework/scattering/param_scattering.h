@@ -46,7 +46,7 @@ TableValue scattering_table(const ScatteringValue& value);
 ///     else 0
 ///
 /// Interpolation is linear between kScatteringSamples radii.
-extern const ParamTypeTraits kScatteringParam;
+extern const ParamType kScatteringParam;
 
 /// Rows of the texture for each of the value's profiles; it is kScatteringSamples wide, rgba32f.
 inline constexpr int kScatteringRows = 4;

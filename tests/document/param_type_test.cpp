@@ -1,4 +1,4 @@
-// A type is one table entry: everything that core does with parameters asks it, never which type it is. The
+// A type is one class: everything that core does with parameters asks it, never which type it is. The
 // type of this file is known to nobody else.
 #include "framework/document/param_type.h"
 
@@ -25,55 +25,46 @@ using test::value_of;
 // "16:9": a number for shaders, which documents write as a ratio.
 namespace ratio {
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    const std::size_t colon = node.string.find(':');
-    if (!node.is_string() || colon == std::string::npos) return reader.wrong_kind(node, "a ratio");
-    const auto first = parse_number(node.string.substr(0, colon)),
-               second = parse_number(node.string.substr(colon + 1));
-    if (!first || !second) return reader.fault(node, "'" + node.string + "' is no ratio");
-    return *first / *second;
-}
+class RatioType final : public AbstractParamType {
+public:
+    constexpr RatioType()
+        : AbstractParamType({.name = "ratio", .glsl_type = "float", .is_continuous = true}) {}
 
-schema::json literal(const ParamSpec&, const schema::LiteralParts&) {
-    return {{"type", "string"}, {"pattern", ":"}};
-}
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        const std::size_t colon = node.string.find(':');
+        if (!node.is_string() || colon == std::string::npos) return reader.wrong_kind(node, "a ratio");
+        const auto first = parse_number(node.string.substr(0, colon)),
+                   second = parse_number(node.string.substr(colon + 1));
+        if (!first || !second) return reader.fault(node, "'" + node.string + "' is no ratio");
+        return *first / *second;
+    }
 
-std::string format(const ParamSpec&, const ParamValue& value) {
-    return json_string(format_number(std::get<double>(value)) + ":1");
-}
+    schema::json literal_schema(const ParamSpec&, const schema::LiteralParts&) const override {
+        return {{"type", "string"}, {"pattern", ":"}};
+    }
 
-std::vector<double> numbers(const ParamSpec&, const ParamValue& value) {
-    return {std::get<double>(value)};
-}
+    std::string format(const ParamSpec&, const ParamValue& value) const override {
+        return json_string(format_number(std::get<double>(value)) + ":1");
+    }
 
-ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) {
-    return numbers.at(0);
-}
+    std::vector<double> numbers(const ParamSpec&, const ParamValue& value) const override {
+        return {std::get<double>(value)};
+    }
 
-std::vector<SweepValue> sweep(const ParamSpec&) {
-    return {{"square", 1.0}, {"wide", 4.0}};
-}
+    ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) const override {
+        return numbers.at(0);
+    }
 
-void declare(grammar::Block& declaration, const grammar::Block&) {
-    declaration.keys.push_back(grammar::required("terms", grammar::integer(), "How many."));
-}
+    std::vector<SweepValue> sweep(const ParamSpec&) const override {
+        return {{"square", 1.0}, {"wide", 4.0}};
+    }
 
-constexpr ParamTypeTraits type() {
-    ParamTypeTraits traits;
-    traits.name = "ratio";
-    traits.glsl_type = "float";
-    traits.is_continuous = true;
-    traits.declare = declare;
-    traits.parse = parse;
-    traits.schema = literal;
-    traits.format = format;
-    traits.numbers = numbers;
-    traits.of_numbers = of_numbers;
-    traits.sweep = sweep;
-    return traits;
-}
+    void declare(grammar::Block& declaration, const grammar::Block&) const override {
+        declaration.keys.push_back(grammar::required("terms", grammar::integer(), "How many."));
+    }
+};
 
-constinit const ParamTypeTraits kType = type();
+constexpr RatioType kType;
 
 }  // namespace ratio
 
@@ -90,7 +81,7 @@ ParamSpec spec_with_ratio(const std::string& declaration) {
 
 const std::string kRatio = R"({"type": "ratio", "terms": 2, "default": "16:9", "doc": "."})";
 
-TEST(ParamType, OfATableEntryReadsAndWritesItsValues) {
+TEST(ParamType, OfOneClassReadsAndWritesItsValues) {
     const ParamSpec spec = spec_with_ratio(kRatio);
     EXPECT_EQ(param_type_name(spec.type), "ratio");
     EXPECT_EQ(spec.default_value, ParamValue(16.0 / 9));
@@ -104,7 +95,7 @@ TEST(ParamType, OfATableEntryReadsAndWritesItsValues) {
     EXPECT_EQ(schema::literal(spec).dump(), R"({"type":"string","pattern":":"})");
 }
 
-TEST(ParamType, OfATableEntryMayBeAColumn) {
+TEST(ParamType, OfOneClassMayBeAColumn) {
     const ParamSpec spec = spec_with_ratio(
         R"({"type": "table", "columns": {"shape": {"type": "ratio", "terms": 2, "default": "4:1", "doc": "."}},
             "doc": "."})");
@@ -139,16 +130,13 @@ TEST(ParamType, HasItsOwnKeysInCheckSchemaAndTable) {
     EXPECT_FALSE(grammar::check(test::parsed(kRatio), before, diagnostics));
 }
 
-TEST(ParamType, OfEveryEntryIsComplete) {
+TEST(ParamType, HasTraitsThatFit) {
     for (const ParamType type : types()) {
-        EXPECT_TRUE(type->parse && type->schema) << type->name;
         const bool is_block = is_block_type(type);
-        EXPECT_EQ(is_block, type->numbers && type->of_numbers && !type->glsl_type.empty()) << type->name;
+        EXPECT_EQ(is_block, !type->glsl_type.empty()) << type->name;
         EXPECT_EQ(type->home == ParamHome::resource, is_param_texture(type) || is_param_buffer(type));
         EXPECT_TRUE(is_block || !(type->is_integer || type->is_continuous || type->is_choice)) << type->name;
         EXPECT_TRUE(!type->is_scalar || (type->has_range && component_count(type) == 1)) << type->name;
-        EXPECT_EQ(is_param_texture(type), type->texture.texels && type->texture.glsl) << type->name;
-        EXPECT_EQ(is_param_buffer(type), type->table.entries != nullptr) << type->name;
     }
 }
 

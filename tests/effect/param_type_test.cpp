@@ -1,4 +1,4 @@
-// A type of one table entry that reaches shaders by a texture: the type of this file is known to nobody else.
+// A type of one class that reaches shaders by a texture: the type of this file is known to nobody else.
 #include "framework/document/param_type.h"
 
 #include <memory>
@@ -31,46 +31,52 @@ const Steps& content_of(const ParamValue& value) {
     return dynamic_cast<const Steps&>(std::get<OpaqueValue>(value).content());
 }
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    if (!node.is_array()) return reader.wrong_kind(node, "numbers");
-    auto content = std::make_shared<Steps>();
-    for (const Node& item : node.items) content->numbers.push_back(item.number);
-    return OpaqueValue(std::move(content));
-}
+class StepsTexture final : public AbstractParamTexture {
+public:
+    TexelSize size(const ParamValue& value) const override {
+        return {int(content_of(value).numbers.size()), 1, 1};
+    }
 
-TexelSize size(const ParamValue& value) {
-    return {int(content_of(value).numbers.size()), 1, 1};
-}
+    std::vector<float> texels(const ParamSpec&, const ParamValue& value) const override {
+        const auto& numbers = content_of(value).numbers;
+        return {numbers.begin(), numbers.end()};
+    }
 
-std::vector<float> texels(const ParamSpec&, const ParamValue& value) {
-    const auto& numbers = content_of(value).numbers;
-    return {numbers.begin(), numbers.end()};
-}
-
-std::string glsl(const ParamSpec& spec, int binding) {
-    return filled(
-        R"(layout(binding = $binding) uniform sampler2D $texture;
+    std::string glsl(const ParamSpec& spec, int binding) const override {
+        return filled(
+            R"(layout(binding = $binding) uniform sampler2D $texture;
 float $name(int i) { return texelFetch($texture, ivec2(i, 0), 0).r; }
 )",
-        {{"binding", std::to_string(binding)}, {"name", spec.name}, {"texture", spec.name + "_steps"}});
-}
+            {{"binding", std::to_string(binding)}, {"name", spec.name}, {"texture", spec.name + "_steps"}});
+    }
+};
 
-std::string defines(const ParamSpec& spec, const ParamValue& value) {
-    return "#define " + upper_case(spec.name) + "_COUNT " + std::to_string(content_of(value).numbers.size()) +
-           "\n";
-}
+constexpr StepsTexture kTexture;
 
-constexpr ParamTypeTraits type() {
-    ParamTypeTraits traits;
-    traits.name = "steps";
-    traits.home = ParamHome::resource;
-    traits.parse = parse;
-    traits.texture = {"", size, texels, glsl};
-    traits.defines = defines;
-    return traits;
-}
+class StepsType final : public AbstractParamType {
+public:
+    constexpr StepsType()
+        : AbstractParamType(
+              {.name = "steps", .home = ParamHome::resource, .texture = &kTexture, .has_defines = true}) {}
 
-constinit const ParamTypeTraits kType = type();
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        if (!node.is_array()) return reader.wrong_kind(node, "numbers");
+        auto content = std::make_shared<Steps>();
+        for (const Node& item : node.items) content->numbers.push_back(item.number);
+        return OpaqueValue(std::move(content));
+    }
+
+    nlohmann::ordered_json literal_schema(const ParamSpec&, const schema::LiteralParts&) const override {
+        return {{"type", "array"}};
+    }
+
+    std::string defines(const ParamSpec& spec, const ParamValue& value) const override {
+        return "#define " + upper_case(spec.name) + "_COUNT " +
+               std::to_string(content_of(value).numbers.size()) + "\n";
+    }
+};
+
+constexpr StepsType kType;
 const ParamType kTypes[] = {kType};
 
 }  // namespace steps
@@ -90,7 +96,7 @@ TEST(ParamTypes, AreThoseOfCoreThenThoseAboveIt) {
                   "'scattering_profile'; did you mean 'float'?"});
 }
 
-TEST(ParamTypes, OfATableEntryAreDeclaredToShaders) {
+TEST(ParamTypes, OfOneClassAreDeclaredToShaders) {
     const test::EffectFolder folder;
     test::Assembly assembly(folder);
     const ParamSpec spec = steps_spec();
@@ -102,7 +108,7 @@ TEST(ParamTypes, OfATableEntryAreDeclaredToShaders) {
     ASSERT_EQ(bindings.param_samplers.size(), 1u);
     EXPECT_TRUE(bindings.param_buffers.empty());
     const std::string text = interface_glsl(shader);
-    const std::string declared = steps::glsl(spec, bindings.first_param_sampler);
+    const std::string declared = steps::kTexture.glsl(spec, bindings.first_param_sampler);
     EXPECT_NE(text.find(declared), std::string::npos) << text;
     EXPECT_NE(text.find("#define LEVELS_COUNT 3\n"), std::string::npos) << text;
 }
@@ -110,7 +116,7 @@ TEST(ParamTypes, OfATableEntryAreDeclaredToShaders) {
 class ParamTypesOn : public test::ParamResourcesOn {};
 ON_EACH_BACKEND(ParamTypesOn);
 
-TEST_P(ParamTypesOn, OfATableEntryAreReadByShaders) {
+TEST_P(ParamTypesOn, OfOneClassAreReadByShaders) {
     const ParamSpec spec = steps_spec();
     const ParamValue value = test::value_of(spec, "[2, 3, 5, 7]");
     EXPECT_EQ(format_value(spec, value), "[2, 3, 5, 7]");

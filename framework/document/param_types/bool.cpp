@@ -6,54 +6,46 @@ namespace aftershade {
 
 namespace bool_type {
 
-void declare(grammar::Block& declaration, const grammar::Block&) {
-    declaration.keys.push_back(
-        grammar::optional("ocio", grammar::choice({"inverse"}),
-                          "The part of the effect's OpenColorIO transform that it says."));
-}
+class BoolType final : public AbstractParamType {
+public:
+    constexpr BoolType() : AbstractParamType({.name = "bool", .glsl_type = "bool", .is_integer = true}) {}
 
-void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    if (const Node* const part = reader.node.find("ocio")) spec.ocio = part->string;
-}
+    void declare(grammar::Block& declaration, const grammar::Block&) const override {
+        declaration.keys.push_back(
+            grammar::optional("ocio", grammar::choice({"inverse"}),
+                              "The part of the effect's OpenColorIO transform that it says."));
+    }
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    if (node.kind != Node::Kind::boolean) return reader.wrong_kind(node, "true or false");
-    return node.boolean;
-}
+    void read_declaration(const SpecReader& reader, ParamSpec& spec) const override {
+        if (const Node* const part = reader.node.find("ocio")) spec.ocio = part->string;
+    }
 
-schema::json literal(const ParamSpec&, const schema::LiteralParts&) {
-    return {{"type", "boolean"}};
-}
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        if (node.kind != Node::Kind::boolean) return reader.wrong_kind(node, "true or false");
+        return node.boolean;
+    }
 
-std::vector<double> numbers(const ParamSpec&, const ParamValue& value) {
-    return {std::get<bool>(value) ? 1.0 : 0.0};
-}
+    schema::json literal_schema(const ParamSpec&, const schema::LiteralParts&) const override {
+        return {{"type", "boolean"}};
+    }
 
-ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) {
-    return numbers.at(0) != 0;
-}
+    std::vector<double> numbers(const ParamSpec&, const ParamValue& value) const override {
+        return {std::get<bool>(value) ? 1.0 : 0.0};
+    }
 
-std::vector<SweepValue> sweep(const ParamSpec&) {
-    return {{"false", false}, {"true", true}};
-}
+    ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) const override {
+        return numbers.at(0) != 0;
+    }
 
-constexpr ParamTypeTraits type() {
-    ParamTypeTraits traits;
-    traits.name = "bool";
-    traits.glsl_type = "bool";
-    traits.is_integer = true;
-    traits.declare = declare;
-    traits.read_declaration = read_declaration;
-    traits.parse = parse;
-    traits.schema = literal;
-    traits.numbers = numbers;
-    traits.of_numbers = of_numbers;
-    traits.sweep = sweep;
-    return traits;
-}
+    std::vector<SweepValue> sweep(const ParamSpec&) const override {
+        return {{"false", false}, {"true", true}};
+    }
+};
+
+constexpr BoolType kType;
 
 }  // namespace bool_type
 
-constinit const ParamTypeTraits kBoolParam = bool_type::type();
+constinit const ParamType ParamType::bool_{bool_type::kType};
 
 }  // namespace aftershade

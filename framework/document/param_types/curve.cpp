@@ -94,95 +94,7 @@ double CurveValue::at(double x) const {
 
 namespace curve_type {
 
-std::optional<ParamValue> parse(const ValueReader& value_reader, const Node& node) {
-    const auto& [spec, label, diagnostics] = value_reader;
-    CurveValue value;
-    const int errors_before = diagnostics.error_count();
-    const Node* points = &node;
-    std::string points_label = label;
-    if (node.is_object()) {
-        ObjectReader reader(node, label, diagnostics);
-        value.interpolation = read_interpolation(reader);
-        points = reader.array("points", ObjectReader::Presence::required);
-        reader.finish();
-        points_label += ".points";
-    } else if (!node.is_array()) {
-        return value_reader.wrong_kind(
-            node, "points, [[x, y], ...], or an object with 'points' and 'interpolation'");
-    }
-    if (!points) return std::nullopt;
-    const std::size_t count = points->items.size();
-    if (count < 1 || count > kMaxCurvePoints)
-        return ValueReader{spec, points_label, diagnostics}.fault(
-            *points,
-            std::to_string(count) + " points; a curve has from 1 to " + std::to_string(kMaxCurvePoints));
-    for (std::size_t i = 0; i < count; ++i) {
-        const ValueReader reader{spec, points_label + "[" + std::to_string(i) + "]", diagnostics};
-        const auto point = read_point(reader, points->items[i]);
-        if (!point) continue;
-        if (!value.points.empty() && (*point)[0] <= value.points.back()[0])
-            reader.fault(points->items[i], "x " + format_number((*point)[0]) +
-                                               " must lie above the x of the point before, " +
-                                               format_number(value.points.back()[0]));
-        value.points.push_back(*point);
-    }
-    if (diagnostics.error_count() > errors_before) return std::nullopt;
-    return value;
-}
-
 constexpr const char* kDomainFault = "'domain' holds two numbers that rise, the ends of x";
-
-void declare(grammar::Block& declaration, const grammar::Block&) {
-    declaration.keys.push_back(grammar::optional(
-        "domain", grammar::list(grammar::number(), {.min = 2, .max = 2, .fault = kDomainFault}),
-        "Range of x.", "[0, 1]"));
-}
-
-void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    const Node* domain = reader.node.find("domain");
-    if (!domain) return;
-    spec.domain = {domain->items[0].number, domain->items[1].number};
-    if (spec.domain[0] >= spec.domain[1]) reader.diagnostics.error(domain->place, kDomainFault);
-}
-
-schema::json literal(const ParamSpec& spec, const schema::LiteralParts& parts) {
-    const schema::json x = {{"type", "number"}, {"minimum", spec.domain[0]}, {"maximum", spec.domain[1]}};
-    ParamSpec y = spec;
-    y.type = ParamType::float_;
-    const schema::json point = {{"type", "array"},
-                                {"prefixItems", {parts.part(x), parts.part(schema::quantity(y))}},
-                                {"minItems", 2},
-                                {"maxItems", 2}};
-    const schema::json points = schema::array_of(parts.part(point), 1, int(kMaxCurvePoints));
-    const schema::json interpolation = parts.part(schema::one_of({"linear", "smooth"}));
-    return schema::any_of(
-        {points,
-         schema::object({{"points", parts.part(points)}, {"interpolation", interpolation}}, {"points"})});
-}
-
-schema::json describe(const ParamSpec& spec) {
-    return {{"domain", spec.domain}};
-}
-
-ParamValue scale(const ParamSpec& spec, const ParamValue& value, double factor) {
-    CurveValue curve = std::get<CurveValue>(value);
-    if (spec.unit == "px")
-        for (auto& point : curve.points) point[1] = scaled_px(spec, point[1], factor);
-    return curve;
-}
-
-TexelSize texture_size(const ParamValue&) {
-    return {kCurveSamples, 1, 1};
-}
-
-std::vector<float> texels(const ParamSpec& spec, const ParamValue& value) {
-    const auto& curve = std::get<CurveValue>(value);
-    std::vector<float> samples;
-    for (int i = 0; i < kCurveSamples; ++i)
-        samples.push_back(
-            float(curve.at(std::lerp(spec.domain[0], spec.domain[1], double(i) / (kCurveSamples - 1)))));
-    return samples;
-}
 
 constexpr std::string_view kCurve = R"(layout(binding = $binding) uniform sampler2D $texture;
 float $name(float x) {
@@ -194,33 +106,116 @@ float $name(float x) {
 }
 )";
 
-std::string glsl(const ParamSpec& spec, int binding) {
-    const auto [low, high] = spec.domain;
-    return filled(kCurve, {{"name", spec.name},
-                           {"texture", spec.name + "_curve"},
-                           {"binding", std::to_string(binding)},
-                           {"low", glsl_float(low)},
-                           {"scale", glsl_float((kCurveSamples - 1) / (high - low))},
-                           {"last", glsl_float(kCurveSamples - 1)}});
-}
+class CurveTexture final : public AbstractParamTexture {
+public:
+    TexelSize size(const ParamValue&) const override { return {kCurveSamples, 1, 1}; }
 
-constexpr ParamTypeTraits type() {
-    ParamTypeTraits traits;
-    traits.name = "curve";
-    traits.home = ParamHome::resource;
-    traits.has_range = true;  // of y
-    traits.declare = declare;
-    traits.read_declaration = read_declaration;
-    traits.parse = parse;
-    traits.schema = literal;
-    traits.describe = describe;
-    traits.scale = scale;
-    traits.texture = {"", texture_size, texels, glsl};
-    return traits;
-}
+    std::vector<float> texels(const ParamSpec& spec, const ParamValue& value) const override {
+        const auto& curve = std::get<CurveValue>(value);
+        std::vector<float> samples;
+        for (int i = 0; i < kCurveSamples; ++i)
+            samples.push_back(
+                float(curve.at(std::lerp(spec.domain[0], spec.domain[1], double(i) / (kCurveSamples - 1)))));
+        return samples;
+    }
+
+    std::string glsl(const ParamSpec& spec, int binding) const override {
+        const auto [low, high] = spec.domain;
+        return filled(kCurve, {{"name", spec.name},
+                               {"texture", spec.name + "_curve"},
+                               {"binding", std::to_string(binding)},
+                               {"low", glsl_float(low)},
+                               {"scale", glsl_float((kCurveSamples - 1) / (high - low))},
+                               {"last", glsl_float(kCurveSamples - 1)}});
+    }
+};
+
+constexpr CurveTexture kTexture;
+
+class CurveType final : public AbstractParamType {
+public:
+    constexpr CurveType()
+        : AbstractParamType(
+              {.name = "curve", .home = ParamHome::resource, .has_range = true, .texture = &kTexture}) {}
+
+    std::optional<ParamValue> parse(const ValueReader& value_reader, const Node& node) const override {
+        const auto& [spec, label, diagnostics] = value_reader;
+        CurveValue value;
+        const int errors_before = diagnostics.error_count();
+        const Node* points = &node;
+        std::string points_label = label;
+        if (node.is_object()) {
+            ObjectReader reader(node, label, diagnostics);
+            value.interpolation = read_interpolation(reader);
+            points = reader.array("points", ObjectReader::Presence::required);
+            reader.finish();
+            points_label += ".points";
+        } else if (!node.is_array()) {
+            return value_reader.wrong_kind(
+                node, "points, [[x, y], ...], or an object with 'points' and 'interpolation'");
+        }
+        if (!points) return std::nullopt;
+        const std::size_t count = points->items.size();
+        if (count < 1 || count > kMaxCurvePoints)
+            return ValueReader{spec, points_label, diagnostics}.fault(
+                *points,
+                std::to_string(count) + " points; a curve has from 1 to " + std::to_string(kMaxCurvePoints));
+        for (std::size_t i = 0; i < count; ++i) {
+            const ValueReader reader{spec, points_label + "[" + std::to_string(i) + "]", diagnostics};
+            const auto point = read_point(reader, points->items[i]);
+            if (!point) continue;
+            if (!value.points.empty() && (*point)[0] <= value.points.back()[0])
+                reader.fault(points->items[i], "x " + format_number((*point)[0]) +
+                                                   " must lie above the x of the point before, " +
+                                                   format_number(value.points.back()[0]));
+            value.points.push_back(*point);
+        }
+        if (diagnostics.error_count() > errors_before) return std::nullopt;
+        return value;
+    }
+
+    void declare(grammar::Block& declaration, const grammar::Block&) const override {
+        declaration.keys.push_back(grammar::optional(
+            "domain", grammar::list(grammar::number(), {.min = 2, .max = 2, .fault = kDomainFault}),
+            "Range of x.", "[0, 1]"));
+    }
+
+    void read_declaration(const SpecReader& reader, ParamSpec& spec) const override {
+        const Node* domain = reader.node.find("domain");
+        if (!domain) return;
+        spec.domain = {domain->items[0].number, domain->items[1].number};
+        if (spec.domain[0] >= spec.domain[1]) reader.diagnostics.error(domain->place, kDomainFault);
+    }
+
+    schema::json literal_schema(const ParamSpec& spec, const schema::LiteralParts& parts) const override {
+        const schema::json x = {{"type", "number"}, {"minimum", spec.domain[0]}, {"maximum", spec.domain[1]}};
+        ParamSpec y = spec;
+        y.type = ParamType::float_;
+        const schema::json point = {{"type", "array"},
+                                    {"prefixItems", {parts.part(x), parts.part(schema::quantity(y))}},
+                                    {"minItems", 2},
+                                    {"maxItems", 2}};
+        const schema::json points = schema::array_of(parts.part(point), 1, int(kMaxCurvePoints));
+        const schema::json interpolation = parts.part(schema::one_of({"linear", "smooth"}));
+        return schema::any_of(
+            {points,
+             schema::object({{"points", parts.part(points)}, {"interpolation", interpolation}}, {"points"})});
+    }
+
+    schema::json describe(const ParamSpec& spec) const override { return {{"domain", spec.domain}}; }
+
+    ParamValue scale(const ParamSpec& spec, const ParamValue& value, double factor) const override {
+        CurveValue curve = std::get<CurveValue>(value);
+        if (spec.unit == "px")
+            for (auto& point : curve.points) point[1] = scaled_px(spec, point[1], factor);
+        return curve;
+    }
+};
+
+constexpr CurveType kType;
 
 }  // namespace curve_type
 
-constinit const ParamTypeTraits kCurveParam = curve_type::type();
+constinit const ParamType ParamType::curve{curve_type::kType};
 
 }  // namespace aftershade

@@ -1,37 +1,41 @@
 // float and angle: one number; an angle has a unit without being asked.
 #include "framework/document/param_types/numbers.h"
+#include "framework/document/schema_pieces.h"
 
 namespace aftershade {
 
 namespace float_type {
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    const auto value = reader.scalar(node);
-    return value ? std::optional<ParamValue>(*value) : std::nullopt;
-}
+class FloatType final : public AbstractParamType {
+public:
+    constexpr FloatType(std::string_view name_of_type, std::string_view unit)
+        : AbstractParamType(number_traits(name_of_type, 1, "float")) {
+        usual_unit = unit;
+    }
 
-std::vector<double> numbers(const ParamSpec&, const ParamValue& value) {
-    return {std::get<double>(value)};
-}
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        const auto value = reader.scalar(node);
+        return value ? std::optional<ParamValue>(*value) : std::nullopt;
+    }
 
-ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) {
-    return numbers.at(0);
-}
+    schema::json literal_schema(const ParamSpec& spec, const schema::LiteralParts&) const override {
+        return schema::quantity(spec);
+    }
 
-constexpr ParamTypeTraits type(std::string_view name, std::string_view usual_unit) {
-    ParamTypeTraits traits = number_traits(name, 1, "float");
-    traits.is_scalar = true;
-    traits.usual_unit = usual_unit;
-    traits.parse = parse;
-    traits.schema = quantity_schema;
-    traits.numbers = numbers;
-    traits.of_numbers = of_numbers;
-    return traits;
-}
+    std::vector<double> numbers(const ParamSpec&, const ParamValue& value) const override {
+        return {std::get<double>(value)};
+    }
+
+    ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) const override {
+        return numbers.at(0);
+    }
+};
+
+constexpr FloatType kFloat("float", ""), kAngle("angle", "deg");
 
 }  // namespace float_type
 
-constinit const ParamTypeTraits kFloatParam = float_type::type("float", "");
-constinit const ParamTypeTraits kAngleParam = float_type::type("angle", "deg");
+constinit const ParamType ParamType::float_{float_type::kFloat};
+constinit const ParamType ParamType::angle{float_type::kAngle};
 
 }  // namespace aftershade

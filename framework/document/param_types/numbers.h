@@ -1,4 +1,4 @@
-// Code that the types of numbers share. Internal to framework/document/param_types.
+// What the types of numbers share. Internal to framework/document/param_types.
 #pragma once
 
 #include <string_view>
@@ -7,9 +7,6 @@
 
 namespace aftershade {
 
-/// A number with limits and unit, of the spec's each component.
-nlohmann::ordered_json quantity_schema(const ParamSpec& spec, const schema::LiteralParts& parts);
-
 /// A block type of numbers with a range, continuous; the rest is the type's own.
 constexpr ParamTypeTraits number_traits(std::string_view name, int components, std::string_view glsl_type) {
     ParamTypeTraits traits;
@@ -17,6 +14,7 @@ constexpr ParamTypeTraits number_traits(std::string_view name, int components, s
     traits.components = components;
     traits.glsl_type = glsl_type;
     traits.has_range = true;
+    traits.is_scalar = components == 1;
     traits.is_continuous = true;
     return traits;
 }

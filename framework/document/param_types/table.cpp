@@ -67,61 +67,8 @@ private:
     TableValue table_;
 };
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    return TableReader(reader).read(node);
-}
-
 bool is_column(const std::string& name) {
     return is_snake_case(name) && !TableKeyReader::is_key(name);
-}
-
-void declare(grammar::Block& declaration, const grammar::Block& column) {
-    declaration.keys.push_back(grammar::required(
-        "columns",
-        grammar::map(
-            grammar::object(column),
-            {.pattern = {"^(?!(object|objects|name)$)[a-z][a-z0-9_]*$", is_column},
-             .fault = std::string("column '{}' ") + kMustBeSnakeCase +
-                      ", and not 'object', 'objects' or 'name', by which a row says for which object it is",
-             .min = 1,
-             .count_fault = "a table has at least one column"}),
-        "Columns, declared like parameters of the block types."));
-}
-
-void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    for (const Member& member : reader.node.find("columns")->members)
-        if (auto column = read_spec(member.key, spec.name + ".columns." + member.key, SpecOwner::table,
-                                    member.value, reader.diagnostics, reader.types))
-            spec.columns.push_back(std::move(*column));
-}
-
-schema::json literal(const ParamSpec& spec, const schema::LiteralParts& parts) {
-    // A declaration's columns are not known where the schema is of every declaration.
-    if (spec.columns.empty()) {
-        const schema::json row = {{"type", "object"}};
-        schema::json keyed = row;
-        keyed["oneOf"] = schema::LiteralParts::one_key();
-        return schema::object({{"default", row}, {"rows", schema::array_of(keyed)}});
-    }
-    schema::json cells = schema::json::object();
-    for (const ParamSpec& column : spec.columns) {
-        cells[column.name] = parts.literal(column);
-        cells[column.name]["description"] = column.doc;
-    }
-    return schema::object({{"default", parts.part(schema::object(cells))},
-                           {"rows", parts.part(schema::array_of(parts.part(parts.keyed_row(cells))))}});
-}
-
-std::string format(const ParamSpec& spec, const ParamValue& value) {
-    return format_table(std::get<TableValue>(value), &spec.columns);
-}
-
-std::string type_text(const ParamSpec&) {
-    return "table by object";
-}
-
-std::string default_text(const ParamSpec&) {
-    return "its columns'";
 }
 
 void scale_row(const ParamSpec& table, TableValue::Row& row, double factor) {
@@ -130,41 +77,84 @@ void scale_row(const ParamSpec& table, TableValue::Row& row, double factor) {
             for (double& number : row[i]) number = scaled_px(table.columns[i], number, factor);
 }
 
-ParamValue scale(const ParamSpec& spec, const ParamValue& value, double factor) {
-    TableValue table = std::get<TableValue>(value);
-    scale_row(spec, table.default_row, factor);
-    for (auto& [key, row] : table.rows) scale_row(spec, row, factor);
-    return table;
-}
+class RowsAsTheyAre final : public AbstractParamTable {
+public:
+    TableValue rows(const ParamValue& value) const override { return std::get<TableValue>(value); }
+};
 
-std::size_t entries(const ParamValue& value) {
-    return count_entries(std::get<TableValue>(value).rows);
-}
+constexpr RowsAsTheyAre kTable;
 
-TableValue rows(const ParamValue& value) {
-    return std::get<TableValue>(value);
-}
+class TableType final : public AbstractParamType {
+public:
+    constexpr TableType()
+        : AbstractParamType({.name = "table",
+                             .home = ParamHome::resource,
+                             .has_default = false,
+                             .has_columns = true,
+                             .table = &kTable}) {}
 
-constexpr ParamTypeTraits type() {
-    ParamTypeTraits traits;
-    traits.name = "table";
-    traits.home = ParamHome::resource;
-    traits.has_default = false;
-    traits.has_columns = true;
-    traits.declare = declare;
-    traits.read_declaration = read_declaration;
-    traits.parse = parse;
-    traits.schema = literal;
-    traits.format = format;
-    traits.type_text = type_text;
-    traits.default_text = default_text;
-    traits.scale = scale;
-    traits.table = {entries, rows, "", nullptr};
-    return traits;
-}
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        return TableReader(reader).read(node);
+    }
+
+    void declare(grammar::Block& declaration, const grammar::Block& column) const override {
+        declaration.keys.push_back(grammar::required(
+            "columns",
+            grammar::map(
+                grammar::object(column),
+                {.pattern = {"^(?!(object|objects|name)$)[a-z][a-z0-9_]*$", is_column},
+                 .fault =
+                     std::string("column '{}' ") + kMustBeSnakeCase +
+                     ", and not 'object', 'objects' or 'name', by which a row says for which object it is",
+                 .min = 1,
+                 .count_fault = "a table has at least one column"}),
+            "Columns, declared like parameters of the block types."));
+    }
+
+    void read_declaration(const SpecReader& reader, ParamSpec& spec) const override {
+        for (const Member& member : reader.node.find("columns")->members)
+            if (auto column = read_spec(member.key, spec.name + ".columns." + member.key, SpecOwner::table,
+                                        member.value, reader.diagnostics, reader.types))
+                spec.columns.push_back(std::move(*column));
+    }
+
+    schema::json literal_schema(const ParamSpec& spec, const schema::LiteralParts& parts) const override {
+        // A declaration's columns are not known where the schema is of every declaration.
+        if (spec.columns.empty()) {
+            const schema::json row = {{"type", "object"}};
+            schema::json keyed = row;
+            keyed["oneOf"] = schema::LiteralParts::one_key();
+            return schema::object({{"default", row}, {"rows", schema::array_of(keyed)}});
+        }
+        schema::json cells = schema::json::object();
+        for (const ParamSpec& column : spec.columns) {
+            cells[column.name] = parts.literal(column);
+            cells[column.name]["description"] = column.doc;
+        }
+        return schema::object({{"default", parts.part(schema::object(cells))},
+                               {"rows", parts.part(schema::array_of(parts.part(parts.keyed_row(cells))))}});
+    }
+
+    std::string format(const ParamSpec& spec, const ParamValue& value) const override {
+        return format_table(std::get<TableValue>(value), &spec.columns);
+    }
+
+    std::string type_text(const ParamSpec&) const override { return "table by object"; }
+
+    std::string default_text(const ParamSpec&) const override { return "its columns'"; }
+
+    ParamValue scale(const ParamSpec& spec, const ParamValue& value, double factor) const override {
+        TableValue scaled = std::get<TableValue>(value);
+        scale_row(spec, scaled.default_row, factor);
+        for (auto& [key, row] : scaled.rows) scale_row(spec, row, factor);
+        return scaled;
+    }
+};
+
+constexpr TableType kType;
 
 }  // namespace table_type
 
-constinit const ParamTypeTraits kTableParam = table_type::type();
+constinit const ParamType ParamType::table{table_type::kType};
 
 }  // namespace aftershade

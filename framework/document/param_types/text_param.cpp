@@ -7,48 +7,42 @@ namespace aftershade {
 
 namespace text_type {
 
-void declare(grammar::Block& declaration, const grammar::Block&) {
-    declaration.keys.push_back(grammar::optional(
-        "ocio", grammar::choice({"display", "view", "looks", "source", "destination", "correction"}),
-        "The part of the effect's OpenColorIO transform that it says; none for native code to read."));
-}
+class TextType final : public AbstractParamType {
+public:
+    constexpr TextType() : AbstractParamType({.name = "text", .home = ParamHome::host}) {}
 
-void read_declaration(const SpecReader& reader, ParamSpec& spec) {
-    if (const Node* const part = reader.node.find("ocio")) spec.ocio = part->string;
-}
+    void declare(grammar::Block& declaration, const grammar::Block&) const override {
+        declaration.keys.push_back(grammar::optional(
+            "ocio", grammar::choice({"display", "view", "looks", "source", "destination", "correction"}),
+            "The part of the effect's OpenColorIO transform that it says; none for native code to read."));
+    }
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    if (!node.is_string()) return reader.wrong_kind(node, "text, or \"\"");
-    return node.string;
-}
+    void read_declaration(const SpecReader& reader, ParamSpec& spec) const override {
+        if (const Node* const part = reader.node.find("ocio")) spec.ocio = part->string;
+    }
 
-schema::json literal(const ParamSpec&, const schema::LiteralParts&) {
-    return schema::text();
-}
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        if (!node.is_string()) return reader.wrong_kind(node, "text, or \"\"");
+        return node.string;
+    }
 
-std::string type_text(const ParamSpec& spec) {
-    return spec.ocio.empty() ? "text" : "name in the OpenColorIO config";
-}
+    schema::json literal_schema(const ParamSpec&, const schema::LiteralParts&) const override {
+        return schema::text();
+    }
 
-schema::json describe(const ParamSpec& spec) {
-    return spec.ocio.empty() ? schema::json::object() : schema::json{{"ocio", spec.ocio}};
-}
+    std::string type_text(const ParamSpec& spec) const override {
+        return spec.ocio.empty() ? "text" : "name in the OpenColorIO config";
+    }
 
-constexpr ParamTypeTraits type() {
-    ParamTypeTraits traits;
-    traits.name = "text";
-    traits.home = ParamHome::host;
-    traits.declare = declare;
-    traits.read_declaration = read_declaration;
-    traits.parse = parse;
-    traits.schema = literal;
-    traits.type_text = type_text;
-    traits.describe = describe;
-    return traits;
-}
+    schema::json describe(const ParamSpec& spec) const override {
+        return spec.ocio.empty() ? schema::json::object() : schema::json{{"ocio", spec.ocio}};
+    }
+};
+
+constexpr TextType kType;
 
 }  // namespace text_type
 
-constinit const ParamTypeTraits kTextParam = text_type::type();
+constinit const ParamType ParamType::text{text_type::kType};
 
 }  // namespace aftershade

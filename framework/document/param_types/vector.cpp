@@ -6,46 +6,45 @@ namespace aftershade {
 
 namespace vector_type {
 
-std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) {
-    const std::size_t count = std::size_t(component_count(reader.spec.type));
-    if (!node.is_array() || node.items.size() != count)
-        return reader.fault(node, "expected an array of " + std::to_string(count) + " numbers");
-    std::vector<double> values;
-    for (const Node& item : node.items)
-        if (const auto value = reader.scalar(item)) values.push_back(*value);
-    if (values.size() != count) return std::nullopt;
-    return values;
-}
+class VectorType final : public AbstractParamType {
+public:
+    constexpr VectorType(std::string_view name_of_type, int count, std::string_view type_in_glsl)
+        : AbstractParamType(number_traits(name_of_type, count, type_in_glsl)) {}
 
-schema::json literal(const ParamSpec& spec, const schema::LiteralParts& parts) {
-    ParamSpec component = spec;
-    component.type = ParamType::float_;
-    const int count = component_count(spec.type);
-    return schema::array_of(parts.part(schema::quantity(component)), count, count);
-}
+    std::optional<ParamValue> parse(const ValueReader& reader, const Node& node) const override {
+        const std::size_t count = std::size_t(components);
+        if (!node.is_array() || node.items.size() != count)
+            return reader.fault(node, "expected an array of " + std::to_string(count) + " numbers");
+        std::vector<double> values;
+        for (const Node& item : node.items)
+            if (const auto value = reader.scalar(item)) values.push_back(*value);
+        if (values.size() != count) return std::nullopt;
+        return values;
+    }
 
-std::vector<double> numbers(const ParamSpec&, const ParamValue& value) {
-    return std::get<std::vector<double>>(value);
-}
+    schema::json literal_schema(const ParamSpec& spec, const schema::LiteralParts& parts) const override {
+        ParamSpec component = spec;
+        component.type = ParamType::float_;
+        return schema::array_of(parts.part(schema::quantity(component)), components, components);
+    }
 
-ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) {
-    return numbers;
-}
+    std::vector<double> numbers(const ParamSpec&, const ParamValue& value) const override {
+        return std::get<std::vector<double>>(value);
+    }
 
-constexpr ParamTypeTraits type(std::string_view name, int components, std::string_view glsl_type) {
-    ParamTypeTraits traits = number_traits(name, components, glsl_type);
-    traits.parse = parse;
-    traits.schema = literal;
-    traits.numbers = numbers;
-    traits.of_numbers = of_numbers;
-    return traits;
-}
+    ParamValue of_numbers(const ParamSpec&, const std::vector<double>& numbers) const override {
+        return numbers;
+    }
+};
+
+constexpr VectorType kColor("color", 3, "vec3"), kVec2("vec2", 2, "vec2"), kVec3("vec3", 3, "vec3"),
+    kVec4("vec4", 4, "vec4");
 
 }  // namespace vector_type
 
-constinit const ParamTypeTraits kColorParam = vector_type::type("color", 3, "vec3");
-constinit const ParamTypeTraits kVec2Param = vector_type::type("vec2", 2, "vec2");
-constinit const ParamTypeTraits kVec3Param = vector_type::type("vec3", 3, "vec3");
-constinit const ParamTypeTraits kVec4Param = vector_type::type("vec4", 4, "vec4");
+constinit const ParamType ParamType::color{vector_type::kColor};
+constinit const ParamType ParamType::vec2{vector_type::kVec2};
+constinit const ParamType ParamType::vec3{vector_type::kVec3};
+constinit const ParamType ParamType::vec4{vector_type::kVec4};
 
 }  // namespace aftershade
