@@ -264,20 +264,9 @@ private:
         return true;
     }
 
-    /// The last step whose picture this one takes; -1: it takes the capture's.
-    static int step_of_picture(const PipelineStep& step) {
-        int last = -1;
-        for (const InputSpec& input : step.manifest->inputs) {
-            const auto source = step.inputs.find(input.name);
-            if (input.role == "color" && source != step.inputs.end())
-                last = std::max(last, source->second.step);
-        }
-        return last;
-    }
-
     void warn_of_order(const LookStep& look_step, const PipelineStep& step) {
         for (const ModuleSpec& module : step.manifest->modules)
-            for (int i = 0; i <= step_of_picture(step); ++i) {
+            for (int i = 0; i <= step.step_of_color(); ++i) {
                 const PipelineStep& earlier = pipeline_.steps[std::size_t(i)];
                 for (const ModuleSpec& other : earlier.manifest->modules)
                     if (std::ranges::find(module.before, other.name) != module.before.end())
