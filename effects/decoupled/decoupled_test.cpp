@@ -158,6 +158,9 @@ TEST(Decoupled, OnSuzanneIsNearHerRenderersShutter) {
 
 // ---- both ----
 
+constexpr const char* kInTurn =
+    R"({"effect": "dof"}, {"effect": "motion_blur"}, {"effect": "decoupled", "in": {"color": "capture.color", "in_turn": "motion_blur.color"}})";
+
 /// The truth at this size has 128 samples.
 TEST(Decoupled, WhereLensAndShutterMeetIsNearerToTheTruthThanOneAfterTheOther) {
     const scene::Scene toys = scene::shipped_scene("toys");
@@ -172,17 +175,40 @@ TEST(Decoupled, WhereLensAndShutterMeetIsNearerToTheTruthThanOneAfterTheOther) {
     };
     const Image both = truth(true, true), lens = truth(true, false), shutter = truth(false, true);
     std::vector<bool> meet = changed_pixels(lens, both);
-    const std::vector<bool> by_lens = changed_pixels(shutter, both);
+    const std::vector<bool> by_lens = changed_pixels(shutter, both), all(meet.size(), true);
     for (std::size_t i = 0; i < meet.size(); ++i) meet[i] = meet[i] && by_lens[i];
     ASSERT_GT(std::count(meet.begin(), meet.end(), true), 300);
-    const auto db = [&](const std::string& steps) {
-        LookRunner runner(R"({"aftershade": 1, "steps": [)" + steps + "]}", gpu::test_backend());
-        return display_psnr_db_where(meet, both, runner.color(capture));
+    const auto picture = [&](const std::string& steps) {
+        return LookRunner(R"({"aftershade": 1, "steps": [)" + steps + "]}", gpu::test_backend())
+            .color(capture);
     };
-    const double apart = db(R"({"effect": "dof"}, {"effect": "motion_blur"})"),
-                 at_once = db(R"({"effect": "decoupled"})");
-    fmt::print("toys, where lens and shutter meet: {:.2f} dB, dof and motion_blur {:.2f}\n", at_once, apart);
-    EXPECT_GE(at_once, apart + 0.5);
+    const auto db = [&](const Image& image) { return display_psnr_db_where(meet, both, image); };
+    const Image apart = picture(R"({"effect": "dof"}, {"effect": "motion_blur"})"), mixed = picture(kInTurn);
+    const double at_once = db(picture(R"({"effect": "decoupled"})"));
+    fmt::print("toys, where lens and shutter meet: {:.2f} dB, dof and motion_blur {:.2f}, mixed {:.2f}\n",
+               at_once, db(apart), db(mixed));
+    EXPECT_GE(at_once, db(apart) + 0.5);
+    EXPECT_GE(db(mixed), db(apart) + 0.5);
+    EXPECT_GE(display_psnr_db_where(all, both, mixed), display_psnr_db_where(all, both, apart) + 0.3);
+}
+
+/// Of pixels that are not square, too.
+TEST(Decoupled, TakesThePictureInTurnBitForBitWhereNothingMoves) {
+    Capture capture = near_box_before_focus();
+    const std::string lens =
+        fmt::format(R"("params": {{"focus_distance": {}, "f_number": 0.2}})", kApertureFocusM);
+    const std::string in_turn = R"({"effect": "dof", )" + lens + R"(}, {"effect": "motion_blur"})";
+    const std::string mixed =
+        R"(, {"effect": "decoupled", "in": {"color": "capture.color", "in_turn": "motion_blur.color"}, )" +
+        lens + "}";
+    for (const float aspect : {1.0f, 2.0f}) {
+        capture.header.pixel_aspect = aspect;
+        const auto picture = [&](const std::string& steps) {
+            return LookRunner(R"({"aftershade": 1, "steps": [)" + steps + "]}", gpu::test_backend())
+                .color(capture);
+        };
+        expect_same_bits(picture(in_turn + mixed), picture(in_turn));
+    }
 }
 
 // ---- readouts ----

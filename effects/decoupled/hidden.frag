@@ -134,7 +134,9 @@ void main() {
     float around_px = texelFetch(reach, p / kTile, 0).r;
     float furthest_px = min(reach_px(texelFetch(coc, p, 0).r, path_at(p)) + around_px, kFurthestPx) + 1.5;
     float at_infinity_px = lens_at_infinity_px();
-    Chord found = behind(p, last_order(p, at_infinity_px), furthest_px, false);
+    float last = last_order(p, at_infinity_px);
+    if (texelFetch(behind_order, p / kTile, 0).r <= last + kClearPx) return;
+    Chord found = behind(p, last, furthest_px, false);
     if (found.weight == 0.0) return;
     // What is thinner than its blur shows what is behind it in turn.
     for (int i = 0; i < 2; ++i) {

@@ -23,6 +23,9 @@ bool is_seen(ivec2 p, int s, uint level) {
 // sample.
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
+#ifdef HAS_MEET
+    if (texelFetch(meet, p / 16, 0).r == 0.0) discard;
+#endif
     Aperture aperture = make_aperture(param.blades, param.curvature, radians(param.rotation));
     float coc_px = texelFetch(coc, source, 0).r, radius_px = abs(coc_px), part = 0.0;
     vec4 path = path_at(source);
@@ -40,5 +43,10 @@ void main() {
         if (covers > 0.0 && is_seen(p, sample_near(point, moves ? i : kTimes), level)) part += covers;
     }
     part /= float(times) * max(aperture.area * radius_px * radius_px, 1.0);
-    out_highlights = vec4(part * texelFetch(highlight, source, 0).rgb, 0.0);
+#ifdef HAS_MEET
+    float reaches = part > 0.0 ? 1.0 : 0.0;
+#else
+    const float reaches = 0.0;
+#endif
+    out_highlights = vec4(part * texelFetch(highlight, source, 0).rgb, reaches);
 }

@@ -4,11 +4,10 @@
 
 flat out ivec2 source;
 
-// A quad over all that a highlight reaches; none for other pixels.
+// A quad over all that a highlight reaches.
 void main() {
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-    source = ivec2(gl_InstanceID % frame.size.x, gl_InstanceID / frame.size.x);
-    if (texelFetch(highlight, source, 0).a == 0.0) return;
+    uint place = highlight_list[gl_InstanceID];
+    source = ivec2(place & 65535u, place >> 16u);
     vec4 path = path_at(source);
     float lens_px = abs(texelFetch(coc, source, 0).r) + 1.0;
     vec2 opens = way_px(path, kOpens), middle = way_px(path, kOpens + 0.5), closes = way_px(path, kOpens + 1.0);

@@ -61,8 +61,13 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     vec4 texel = texelFetch(color, p, 0);
     out_mixed = 0u;
+#ifdef HAS_SENDS
+    bool is_sent = texelFetch(sends, p / 16, 0).g > 0.0;
+#else
+    const bool is_sent = true;
+#endif
 #ifndef HAS_SECOND
-    if (texelFetch(reach, p / 16, 0).r >= 1.0) out_mixed = pack_mixture(mixture_at(p, texel.rgb));
+    if (is_sent && texelFetch(reach, p / 16, 0).r >= 1.0) out_mixed = pack_mixture(mixture_at(p, texel.rgb));
 #endif
     float share = highlight_share(amount(texel.rgb), texelFetch(surround, p / 8, 0).rg, abs(texelFetch(coc, p, 0).r));
     out_highlight = vec4(share * texel.rgb, share);

@@ -14,11 +14,24 @@ float step_at(ivec2 p) {
 // How far lens and shutter move something here, and whether there is a silhouette.
 void main() {
     ivec2 corner = kTile * ivec2(gl_FragCoord.xy), end = min(corner + kTile, frame.size);
-    float furthest = 0.0, largest_step = 0.0;
+    float furthest_px = 0.0, largest_step = 0.0;
+    vec2 orders_here = vec2(1e9, -1e9);
+    vec2 blurs_px = vec2(0.0);
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x) {
-            furthest = max(furthest, reach_px(texelFetch(coc, ivec2(x, y), 0).r, path_at(ivec2(x, y))));
+            float coc_px = texelFetch(coc, ivec2(x, y), 0).r;
+            vec4 path = path_at(ivec2(x, y));
+            furthest_px = max(furthest_px, reach_px(coc_px, path));
+            blurs_px = max(blurs_px, vec2(abs(coc_px), longest_way_px(path)));
+            float own_order = texelFetch(order, ivec2(x, y), 0).r;
+            orders_here = vec2(min(orders_here.x, own_order), max(orders_here.y, own_order));
             largest_step = max(largest_step, step_at(ivec2(x, y)));
         }
-    out_reach_tile = vec2(furthest, largest_step > 0.5 * kClearPx ? 1.0 : 0.0);
+    out_reach_tile = vec2(furthest_px, largest_step > 0.5 * kClearPx ? 1.0 : 0.0);
+#ifdef HAS_OUT_ORDERS
+    out_orders = orders_here;
+#endif
+#ifdef HAS_OUT_BLURS
+    out_blurs = blurs_px;
+#endif
 }

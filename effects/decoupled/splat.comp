@@ -93,11 +93,17 @@ void splat_picture(ivec2 p, float at_infinity_px) {
 void main() {
     ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(p, frame.size)) || param.samples <= BAND * kBandSamples) return;
+#ifdef HAS_SENDS
+    vec2 sent = texelFetch(sends, p / 16, 0).rg;
+    if (sent.g == 0.0) return;
+#else
+    const vec2 sent = vec2(1.0);
+#endif
     float at_infinity_px = lens_at_infinity_px();
 #ifdef HAS_SECOND
-    splat_layer(p, 0, at_infinity_px);
+    if (sent.r > 0.0) splat_layer(p, 0, at_infinity_px);
 #else
-    splat_picture(p, at_infinity_px);
+    if (sent.r > 0.0) splat_picture(p, at_infinity_px);
 #endif
 #ifdef HAS_LAYER_1
     splat_layer(p, 1, at_infinity_px);

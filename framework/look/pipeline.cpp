@@ -207,18 +207,29 @@ std::vector<MissingRole> find_missing_roles(const Pipeline& pipeline, const Capt
     return missing;
 }
 
+int PipelineStep::step_of_color() const {
+    int last = -1;
+    for (const InputSpec& input : manifest->inputs) {
+        const auto source = inputs.find(input.name);
+        if (input.role == kColorRole && source != inputs.end()) last = std::max(last, source->second.step);
+    }
+    return last;
+}
+
 std::vector<StaleLayers> find_stale_layers(const Pipeline& pipeline) {
     std::vector<StaleLayers> found;
-    std::vector<std::string> before;  // steps so far that change color
     for (const PipelineStep& step : pipeline.steps) {
-        const auto& inputs = step.manifest->inputs;
-        if (std::ranges::any_of(inputs,
-                                [](const InputSpec& i) { return i.role == kColorRole && i.layer > 0; }) &&
-            !before.empty())
-            found.push_back({step.name, before});
-        if (std::ranges::any_of(step.manifest->outputs,
-                                [](const OutputSpec& output) { return output.role == kColorRole; }))
-            before.push_back(step.name);
+        if (std::ranges::none_of(step.manifest->inputs,
+                                 [](const InputSpec& i) { return i.role == kColorRole && i.layer > 0; }))
+            continue;
+        std::vector<std::string> before;
+        for (int i = 0; i <= step.step_of_color(); ++i) {
+            const PipelineStep& earlier = pipeline.steps[std::size_t(i)];
+            if (std::ranges::any_of(earlier.manifest->outputs,
+                                    [](const OutputSpec& output) { return output.role == kColorRole; }))
+                before.push_back(earlier.name);
+        }
+        if (!before.empty()) found.push_back({step.name, before});
     }
     return found;
 }

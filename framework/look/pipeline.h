@@ -49,6 +49,8 @@ struct PipelineStep {
 
     /// Whether the input's conditions may hold: with values that differ from frame to frame they may.
     bool may_take(const InputSpec& input) const;
+    /// The last step whose color it takes, which the look may wire past others; -1: the capture's.
+    int step_of_color() const;
     /// Every value that the parameter may have in any frame, except those that only the capture holds: the
     /// user's value (all of its keys), else the manifest's. Paths of files are complete.
     std::vector<ParamValue> known_values(const ParamSpec& spec) const;

@@ -266,7 +266,8 @@ private:
 
     void warn_of_order(const LookStep& look_step, const PipelineStep& step) {
         for (const ModuleSpec& module : step.manifest->modules)
-            for (const PipelineStep& earlier : pipeline_.steps)
+            for (int i = 0; i <= step.step_of_color(); ++i) {
+                const PipelineStep& earlier = pipeline_.steps[std::size_t(i)];
                 for (const ModuleSpec& other : earlier.manifest->modules)
                     if (std::ranges::find(module.before, other.name) != module.before.end())
                         diagnostics_.warning(look_step.place,
@@ -274,6 +275,7 @@ private:
                                                  "', but effects of the " + module.name +
                                                  " belong before those of the " + other.name +
                                                  ": move it before '" + earlier.name + "'");
+            }
     }
 
     void apply_preset(const LookStep& look_step, PipelineStep& step) {

@@ -28,6 +28,7 @@ FRAME, SAMPLES = 4, 128
 LENS = {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole", "blades": 6}
 NO_LENS = {"focal_length": 1, "f_number": 1000}
 DOF, BLUR = {"effect": "dof"}, {"effect": "motion_blur"}
+IN_TURN = {"color": "capture.color", "in_turn": "motion_blur.color"}
 COUNTS = [8, 16, 32, 64, 256]
 BOTH = {"toys": (100, 60, 240, 150), "leaves": (120, 100, 240, 150)}  # x, y, w, h
 
@@ -87,7 +88,8 @@ def both_at_once() -> Blocks:
         for kind in "1 layer", "4 layers":
             capture = (folder if kind == "1 layer" else WORK / f"{name}_4_layers") / "capture.json"
             for label, steps in {"`dof`, then `motion_blur`": [DOF, BLUR], "`motion_blur`, then `dof`": [BLUR, DOF],
-                                 "`decoupled`, 64 samples": [decoupled()], "`decoupled`, 256 samples": [decoupled(samples=256)]}.items():
+                                 "`decoupled`, 64 samples": [decoupled()], "`decoupled`, 256 samples": [decoupled(samples=256)],
+                                 "`dof`, `motion_blur`, `decoupled`": [DOF, BLUR, decoupled() | {"in": IN_TURN}]}.items():
                 picture, told = through(steps, capture)
                 shares = told["steps"].get("decoupled", {})
                 percent = lambda key: f"{100 * shares[key]['mean']:.1f}" if shares else ""

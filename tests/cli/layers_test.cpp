@@ -94,6 +94,8 @@ TEST_F(CapturesWithLayers, DrawAWarningWhereColorChangesBeforeTheyAreRead) {
         "aftershade: warning: step 'reveal' reads the capture's layers, and 'color_grade' before it changed "
         "the picture's color alone; move what changes light behind 'reveal'\n");
     EXPECT_EQ(warning(reveal + "," + grade, "layers"), "");
+    const std::string wired = R"({"effect": "reveal", "in": {"color": "capture.color"}})";
+    EXPECT_EQ(warning(grade + "," + wired, "layers"), "");
     EXPECT_EQ(warning(grade + "," + reveal, "plain"), "");
 }
 

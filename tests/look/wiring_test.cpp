@@ -16,6 +16,8 @@ TEST(StepOrder, WarnsOfALensAfterAShutter) {
         "those of the shutter: move it before 'motion_blur'\n");
     EXPECT_EQ(faults(R"({"effect": "dof"}, {"effect": "motion_blur"})"), "");
     EXPECT_EQ(faults(R"({"effect": "motion_blur", "enabled": false}, {"effect": "dof"})"), "");
+    EXPECT_EQ(faults(R"({"effect": "motion_blur"}, {"effect": "dof", "in": {"color": "capture.color"}})"),
+              "");
 }
 
 /// `maker` has a texture of every kind; `show` takes any image to color, `warp` a velocity.
