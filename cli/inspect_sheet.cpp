@@ -28,7 +28,13 @@ Image as_rgb(Image picture) {
 
 Image read_display(const Sequence& sequence, const CaptureReader& reader, int frame) {
     const int file = sequence.file_number(frame);
-    if (const auto path = sequence.path_of(file); path.extension() == ".png") return as_rgb(read_png(path));
+    if (const auto path = sequence.path_of(file); path.extension() == ".png") {
+        PngColor color;
+        Image picture = as_rgb(read_png(path, &color));
+        if (color.encoding && *color.encoding != kSrgbDisplay)
+            encode_display_as_srgb(picture, *color.encoding);
+        return picture;
+    }
     Capture capture = reader.read(file, std::vector{std::string(kColorRole)});
     const CaptureHeader& header = capture.header;
     print_differences(header);

@@ -107,6 +107,10 @@ void add_output_options(CLI::App& app, RunArguments& options) {
     app.add_option("--output-roles", options.roles, "Roles in EXR outputs (default: color)")->delimiter(',');
     app.add_option("--pixel-type", options.pixel_type, "Type of roles that are half by default")
         ->check(CLI::IsMember({"half", "float"}));
+    app.add_option(
+           "--png-bits", options.png_bits,
+           "Bits of a sample of PNG outputs: 8 or 16 (default: 16 for displays of PQ and HLG, else 8)")
+        ->check(CLI::IsMember({8, 16}));
     app.add_flag(
         "--keep-channels", options.keep_channels,
         "EXR: also copy the source's channels bit for bit, except those of roles that a step changed");
@@ -225,6 +229,7 @@ OutputOptions output_options(const RunArguments& options) {
     if (options.pixel_type == "float") outputs.color_type = PixelType::float32;
     outputs.keep_channels = options.keep_channels;
     outputs.crop_to_display = options.crop == "display";
+    outputs.png_bits = options.png_bits;
     outputs.compression = options.compression;
     // Its folder is no part of the picture: files of a farm are those of one run, byte for byte.
     outputs.look = std::filesystem::path(options.look).filename().string();

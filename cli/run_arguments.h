@@ -30,6 +30,7 @@ struct RunArguments {
     std::vector<std::string> roles;
     std::vector<std::string> effect_paths;
     std::string pixel_type = "half";
+    int png_bits = 0;
     GlOptions gl;
     std::string draw_with;
     int read_ahead = 0;

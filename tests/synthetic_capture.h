@@ -119,6 +119,9 @@ inline void write_capture(const Capture& capture, const std::filesystem::path& p
     options.data_window = capture.header.data_window;
     options.display_window = capture.header.display_window;
     options.pixel_aspect = capture.header.pixel_aspect;
+    const Chromaticities& primaries = capture.header.primaries;
+    if (primaries != kRec709)
+        options.attributes["chromaticities"] = std::vector<float>(primaries.begin(), primaries.end());
     write_exr(path, channels, options);
 }
 

@@ -9,6 +9,7 @@
 #include "tests/backends.h"
 #include "tests/look_runner.h"
 #include "tests/synthetic_capture.h"
+#include "tests/wide_capture.h"
 
 namespace aftershade::test::bloom {
 namespace {
@@ -154,6 +155,18 @@ TEST(Bloom, SpreadsNoFault) {
                 if ((x == 20 && y == 20) || (x == 40 && y == 40)) continue;
                 ASSERT_NEAR(out.at(x, y, c), 0.5, 0.05) << x << " " << y;
             }
+}
+
+/// Fireflies are softened by their luminance, which is no sum of one space's numbers by another's weights.
+TEST(Bloom, GivesTheSameLightOfCapturesInWiderPrimaries) {
+    Capture capture = point(31, 30, 40, 64, 64);
+    capture.images.at("color").at(31, 30, 2) = 400;
+    capture.images.at("color").at(40, 20, 0) = 300;
+    const std::string params = R"("fireflies": "soften", "threshold": 0, "intensity": 0.5)";
+    const Image expected = bloomed(capture, params);
+    for (const char* space : {"rec2020", "acescg"})
+        EXPECT_LT(largest_share(in_rec709(bloomed(in_space(capture, space), params), space), expected), 1e-3)
+            << space;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include <luminance.glsl>
+#include <color_luminance.glsl>
 #include "bright.glsl"
 
 // A texel lies over exactly two by two of the finer level, counted from the top left: the glow stays round
@@ -9,7 +9,7 @@
 
 float quad_weight(vec4 quad) {
 #if FIREFLIES == FIREFLIES_SOFTEN
-    return 1.0 / (1.0 + max(luminance(quad.rgb), 0.0));
+    return 1.0 / (1.0 + max(color_luminance(quad.rgb), 0.0));
 #else
     return 1.0;
 #endif

@@ -54,6 +54,23 @@ TEST(ColorConvert, TakesTheCapturesPrimariesWhereNoSpaceIsSaid) {
     EXPECT_LT(largest_error(back, wide.images.at("color"), Measure::linear), kLinearLimit);
 }
 
+TEST(ColorConvert, GivesTheEncodingOfTheSpaceForFiles) {
+    using Curve = ColorEncoding::Curve;
+    const Capture capture = make_capture({.width = 4, .height = 4});
+    const auto encoding = [&](const char* space) {
+        return run_step("color_convert", capture, std::string(R"("destination": ")") + space + "\"")
+            .color_encoding;
+    };
+    for (const auto& [space, name] :
+         {std::pair{"ACEScg", "acescg"}, {"ACES2065-1", "ap0"}, {"lin_rec709", "rec709"}})
+        EXPECT_EQ(encoding(space), (ColorEncoding{*color_space_primaries(name), Curve::linear, 1})) << space;
+    EXPECT_EQ(encoding("sRGB - Texture"), kSrgbDisplay);
+    EXPECT_EQ(encoding("ACEScct")->curve, Curve::unknown);
+    EXPECT_EQ(encoding("Raw")->curve, Curve::unknown);
+    EXPECT_FALSE(run_step("color_convert", capture, R"("source": "ACEScct")").color_encoding)
+        << "back in the capture's primaries";
+}
+
 TEST(ColorConvert, ConvertsTheColorNotTheColorTimesItsCoverage) {
     const Capture half =
         make_capture({.width = 4, .height = 4, .background = {0.5f, 0.5f, 0.5f}, .alpha = 0.25f});

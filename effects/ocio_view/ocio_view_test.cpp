@@ -56,7 +56,31 @@ TEST(OcioView, EqualsOpenColorIosProcessorForEveryViewOfTheBuiltInConfig) {
                 << display << ", " << view;
         }
     }
-    EXPECT_EQ(views, 9);
+    EXPECT_EQ(views, 13);
+}
+
+TEST(OcioView, FindsHowEachDisplayIsEncoded) {
+    using Curve = ColorEncoding::Curve;
+    const Chromaticities wide = *color_space_primaries("rec2020");
+    const std::vector<std::pair<std::string, ColorEncoding>> displays = {
+        {"sRGB - Display", kSrgbDisplay},
+        {"Rec.1886 Rec.709 - Display", {kRec709, Curve::gamma, 2.4}},
+        {"P3-D65 - Display", {*color_space_primaries("p3d65"), Curve::gamma, 2.6}},
+        {"Rec.2100-PQ - Display", {wide, Curve::pq, 1}},
+        {"Rec.2100-HLG - Display", {wide, Curve::hlg, 1}}};
+    const Capture capture = make_capture({.width = 4, .height = 4});
+    for (const auto& [display, encoding] : displays)
+        EXPECT_EQ(run_step("ocio_view", capture, R"("view": "Un-tone-mapped", "display": ")" + display + "\"")
+                      .display_encoding,
+                  encoding)
+            << display;
+    EXPECT_EQ(run_step("ocio_view", capture, R"("view": "Raw")").display_encoding.curve, Curve::unknown);
+    EXPECT_EQ(run_step("view_transform", capture, "").display_encoding, kSrgbDisplay);
+    const StudioConfig studio;
+    EXPECT_EQ(
+        run_step("ocio_view", capture, params_of(studio.path(), "Monitor", "Film")).display_encoding.curve,
+        Curve::unknown)
+        << "a LUT";
 }
 
 TEST(OcioView, EqualsOpenColorIosProcessorForAViewByALutAndForLooks) {
@@ -88,12 +112,6 @@ TEST(OcioView, ExposesBeforeTheViewAndRaisesAfterIt) {
     EXPECT_NEAR(value(0.36f, R"("gamma": 2)"), std::sqrt(plain), 1e-5);
 }
 
-TEST(OcioView, MakesADisplayThatIsNotSaidToBeSrgb) {
-    const Capture capture = make_capture({.width = 4, .height = 4});
-    EXPECT_FALSE(run_step("ocio_view", capture, "").has_srgb_display);
-    EXPECT_TRUE(run_step("view_transform", capture, "").has_srgb_display);
-}
-
 TEST(OcioView, TakesTheConfigOfTheVariableWhereTheLookNamesNone) {
     const StudioConfig studio;
     ScopedVariable variable("OCIO");
@@ -112,6 +130,12 @@ TEST(OcioView, SaysWhichNameTheConfigLacksAndWhereItIsWritten) {
               std::string::npos);
     EXPECT_NE(fault_of(R"("looks": "+grade")").find("no look 'grade'"), std::string::npos);
     EXPECT_NE(fault_of(R"("config": "absent.ocio")").find("no file 'absent.ocio'"), std::string::npos);
+    write_text(studio.folder() / "newer.ocio", "ocio_profile_version: 2.99\n");
+    const std::string newer = fault_of(params_of(studio.folder() / "newer.ocio", "", ""));
+    EXPECT_NE(
+        newer.find("too old for this config, which needs 2.99; bake its views with `scripts/make ocio-bake"),
+        std::string::npos)
+        << newer;
     const std::string address = fault_of(R"("config": "ocio://none")");
     EXPECT_NE(address.find("the config 'ocio://none' cannot be used"), std::string::npos) << address;
 }

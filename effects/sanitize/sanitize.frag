@@ -1,6 +1,6 @@
 #version 450 core
 #include <pass>
-#include <luminance.glsl>
+#include <color_luminance.glsl>
 
 bool is_nan(vec4 v) { return any(isnan(v)); }
 bool is_inf(vec4 v) { return any(isinf(v)); }
@@ -72,8 +72,8 @@ void main() {
     if (is_negative(mended)) mended = middle;
 #endif
 
-    float limit = param.firefly_factor * max(luminance(middle.rgb), param.firefly_floor);
-    float light = luminance(mended.rgb);
+    float limit = param.firefly_factor * max(color_luminance(middle.rgb), param.firefly_floor);
+    float light = color_luminance(mended.rgb);
     fault.w = is_sound(mended) && count > 0 && light > limit;
 #if FIREFLY == FIREFLY_CLAMP
     if (fault.w) mended.rgb *= limit / light;

@@ -1,4 +1,5 @@
 // What sanitize does to each kind of fault, against values written by hand.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -9,6 +10,7 @@
 #include "tests/look_runner.h"
 #include "tests/not_finite.h"
 #include "tests/synthetic_capture.h"
+#include "tests/wide_capture.h"
 
 namespace aftershade::test::sanitize {
 namespace {
@@ -112,6 +114,25 @@ TEST(Sanitize, WorksInTheCornerWhereNeighboursAreFew) {
     Capture capture = ramp();
     capture.images["color"].at(0, 0, 0) = kNan;
     EXPECT_EQ(sanitized(capture, "").images.at("color").at(0, 0, 0), 2);  // of 1, 2 and 2
+}
+
+TEST(Sanitize, ClampsTheSameFirefliesOfCapturesInWiderPrimaries) {
+    Capture capture = make_capture({.width = 16, .height = 9, .background = {1, 0.5f, 0.25f}});
+    for (int c = 0; c < 3; ++c) {  // one of each primary
+        Image& color = capture.images.at("color");
+        for (int other = 0; other < 3; ++other) color.at(3 + 4 * c, 4, other) = other == c ? 200.0f : 1.0f;
+    }
+    const std::string step = R"(, "params": {"firefly": "clamp"})";
+    const FrameResult expected = sanitized(capture, step);
+    for (const char* space : {"rec2020", "acescg"}) {
+        const FrameResult result = sanitized(in_space(capture, space), step);
+        EXPECT_LT(largest_share(in_rec709(result.images.at("color"), space), expected.images.at("color")),
+                  1e-4)
+            << space;
+        EXPECT_TRUE(std::ranges::equal(result.taps.at("sanitize.faults").floats(),
+                                       expected.taps.at("sanitize.faults").floats()))
+            << space;
+    }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // What a pixel remembers of its luminance. Exponentially moving mean of weight a, and variance: Finch 2009, Incremental
 // calculation of weighted mean and variance.
-#include <luminance.glsl>
+#include <color_luminance.glsl>
 #include "past.glsl"
 #include "tile.glsl"
 
@@ -9,9 +9,9 @@ float viewed(vec3 light) {
 #if TARGET == TARGET_RELATIVE
     // Level 3 has squares of 64 px.
     vec2 around = textureLod(tile_light, gl_FragCoord.xy * tile_light_size.zw / float(kTile), 3.0).rg;
-    return min(luminance(light) * around.y / max(around.x, 1e-20), 1e6);
+    return min(color_luminance(light) * around.y / max(around.x, 1e-20), 1e6);
 #else
-    return exp2(param.exposure) * luminance(light);
+    return exp2(param.exposure) * color_luminance(light);
 #endif
 }
 

@@ -9,6 +9,7 @@
 
 #include "tests/backends.h"
 #include "tests/scattering_checks.h"
+#include "tests/wide_capture.h"
 
 namespace aftershade::test::sss_adaptive {
 namespace {
@@ -358,6 +359,17 @@ TEST(SssAdaptive, LeavesLightThatIsNoNumberAlone) {
 }
 TEST(SssAdaptive, ChangesTheHeadOfSuzanneAlone) {
     expect_the_head_of_suzanne_alone_changes(kEffect, "");
+}
+
+TEST(SssAdaptive, FollowsTheSameLuminanceOfCapturesInWiderPrimaries) {
+    const Capture capture = lit_plane(kWidth, kHeight, [](int, int, int c) { return c == 0 ? 1 : 0.1f; });
+    const std::string more =
+        R"("guiding": false, "prefilter": false, "control_variate": "none", "target": "absolute")";
+    for (const char* space : {"rec709", "rec2020", "acescg"}) {
+        const FrameResult result = runner(more).run(in_space(capture, space));
+        const double luminance = result.taps.at("sss_adaptive.history").at(kWidth / 2, kHeight / 2, 2);
+        EXPECT_NEAR(luminance, 0.2126 + 0.1 * (0.7152 + 0.0722), 1e-4) << space;
+    }
 }
 
 }  // namespace

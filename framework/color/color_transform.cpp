@@ -4,6 +4,7 @@
 
 #include "framework/color/color_glsl.h"
 #include "framework/color/ocio_config.h"
+#include "framework/color/ocio_encoding.h"
 
 namespace aftershade {
 
@@ -139,6 +140,7 @@ std::variant<ColorTransform, ColorFault> of_config(const ColorRequest& request) 
             if (const fs::path file = escaped_file(config, transform->files); !file.empty())
                 return ColorFault{"", config.name + " names '" + file.string() +
                                           "', which lies outside of its folder and its search path"};
+            if (const auto encoding = encoding_of_result(config, request)) transform->encoding = *encoding;
             if (!config.file.empty()) transform->files.insert(transform->files.begin(), config.file);
         }
         return made;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/color/color_request.h"
+#include "framework/image/color_encoding.h"
 
 namespace aftershade {
 
@@ -16,6 +17,8 @@ struct ColorTransform {
     std::vector<float> texels;  ///< whole rows of kColorTableRow texels, RGBA
     std::vector<std::filesystem::path>
         files;  ///< the config and the LUTs, or the transform, that it was made of
+    /// How its results are encoded: for the view's display, or as the destination; unknown also for a file.
+    ColorEncoding encoding{kRec709, ColorEncoding::Curve::unknown, 1};
 };
 
 /// Reads its files again each time. [thread-safe]

@@ -2,7 +2,9 @@
 
 #ifdef AFTERSHADE_HAS_OPENCOLORIO
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <mutex>
 #include <sstream>
 #include <string_view>
@@ -23,6 +25,22 @@ ColorFault unknown(const std::string& part, const std::string& owner, const std:
                    const std::string& word, const std::vector<std::string>& known) {
     const std::string all = known.empty() ? "" : "; it has " + list_of_names(known, "and");
     return {part, owner + " has no " + what + " '" + word + "'" + did_you_mean(word, known, all)};
+}
+
+/// The version that the config needs where OpenColorIO is older: that of its first line, or the first with
+/// addresses.
+std::string version_for(const OcioConfig& config) {
+    const auto is_newer = [](int major, int minor) {
+        return major * 0x1000000 + minor * 0x10000 > OCIO_VERSION_HEX;
+    };
+    if (config.name.find("ocio://") != std::string::npos) return is_newer(2, 2) ? "2.2" : "";
+    std::ifstream file(config.file);
+    for (std::string line; std::getline(file, line);) {
+        int major = 0, minor = 0;
+        if (std::sscanf(line.c_str(), " ocio_profile_version: %d.%d", &major, &minor) > 0)
+            return is_newer(major, minor) ? std::to_string(major) + "." + std::to_string(minor) : "";
+    }
+    return "";
 }
 
 /// "+grade, -warm | neutral": the names.
@@ -93,8 +111,7 @@ private:
             fault_ = unknown(part, config_.name, "color space or role", name, known);
             return "";
         }
-        for (const char* ap0 : {"aces_interchange", "ACES2065-1", "ACES - ACES2065-1", "lin_ap0"})
-            if (config_.config->getColorSpace(ap0)) return ap0;
+        if (std::string ap0 = ap0_space(*config_.config); !ap0.empty()) return ap0;
         fault_ = {part,
                   config_.name +
                       " has neither a role aces_interchange nor a space ACES2065-1, so it does not say where "
@@ -154,6 +171,12 @@ private:
 
 }  // namespace
 
+std::string ap0_space(const ocio::Config& config) {
+    for (const char* ap0 : {"aces_interchange", "ACES2065-1", "ACES - ACES2065-1", "lin_ap0"})
+        if (config.getColorSpace(ap0)) return ap0;
+    return "";
+}
+
 std::string one_line(const std::string& text) {
     std::istringstream words(text);
     std::string line, word;
@@ -162,9 +185,12 @@ std::string one_line(const std::string& text) {
 }
 
 ColorFault fault_of_config(const OcioConfig& config, const ocio::Exception& error) {
-    const bool is_newer = config.name.find("ocio://") != std::string::npos;
+    const std::string version = version_for(config);
     return {"", config.name + " cannot be used: " + one_line(error.what()) + " (OpenColorIO " +
-                    ocio::GetVersion() + (is_newer ? "; configs of such names need 2.2 or newer)" : ")")};
+                    ocio::GetVersion() +
+                    (version.empty() ? ")"
+                                     : " is too old for this config, which needs " + version +
+                                           "; bake its views with `scripts/make ocio-bake CONFIG FOLDER`)")};
 }
 
 std::variant<OcioConfig, ColorFault> open_config(std::string path) {

@@ -24,6 +24,8 @@ struct OcioConfig {
 /// As in ColorRequest::path.
 std::variant<OcioConfig, ColorFault> open_config(std::string path);
 ColorNames names_of(const OcioConfig& config);
+/// The config's space of ACES2065-1; "" where it has none.
+std::string ap0_space(const ocio::Config& config);
 
 /// Before OpenColorIO has made the transform faster. Throws ocio::Exception, for which fault_of_config().
 std::variant<ocio::ConstProcessorRcPtr, ColorFault> processor_of(const OcioConfig& config,

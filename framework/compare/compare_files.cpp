@@ -245,6 +245,8 @@ private:
             images.test = read(test_, test, common.test, comparison);
             images.reference_primaries = reference_.traits().primaries;
             images.test_primaries = test_.traits().primaries;
+            images.reference_display = reference_.traits().display;
+            images.test_display = test_.traits().display;
             images.areas = pixel_areas(rules_.areas, comparison.window, reference.display_window,
                                        rules_.difference_rules(comparison.label));
             compare_layer(images, rules_, comparison);

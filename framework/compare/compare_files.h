@@ -17,7 +17,7 @@
 #include "framework/compare/layer_file.h"
 #include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_differences.h"
-#include "framework/image/color_space.h"
+#include "framework/image/color_encoding.h"
 
 namespace aftershade {
 
@@ -98,6 +98,8 @@ struct LayerImages {
     PixelAreas areas = {};
     /// Of the light in each image, where the layer is `color`.
     Chromaticities reference_primaries = kRec709, test_primaries = kRec709;
+    /// Of each image, where the layer is `display`.
+    ColorEncoding reference_display = kSrgbDisplay, test_display = kSrgbDisplay;
 };
 
 /// Called after each layer; the images may be moved from.

@@ -147,9 +147,11 @@ void LayerFile::Impl::open_png() {
     traits.colors = color.space;
     traits.pixel_aspect = color.pixel_aspect;
     if (color.is_animated) traits.left_out.push_back("all pictures of the animation but the first");
-    if (!color.is_srgb())
+    const bool is_known = color.encoding && !color.is_srgb();
+    if (is_known) traits.display = *color.encoding;
+    else if (!color.is_srgb())
         traits.notes.push_back("its colours are of " + color.space + ", and are read as sRGB");
-    if (color.gamma) {
+    if (color.gamma && !is_known) {
         traits.notes.push_back(fmt::format(
             "its chunk gAMA {:.5g} is applied: colours are compared as sRGB encodes them", *color.gamma));
         const int colors = image.channels() - (image.channels() % 2 == 0 ? 1 : 0);

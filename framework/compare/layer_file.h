@@ -11,14 +11,15 @@
 
 #include "framework/base/open_file.h"
 #include "framework/compare/layer.h"
-#include "framework/image/color_space.h"
+#include "framework/image/color_encoding.h"
 
 namespace aftershade {
 
 /// Properties of a file besides the values of its layers.
 struct FileTraits {
-    std::string colors;                  ///< what the numbers of colours mean: "sRGB", "rec709"
-    Chromaticities primaries = kRec709;  ///< of linear colours
+    std::string colors;                    ///< what the numbers of colours mean: "sRGB", "rec709"
+    Chromaticities primaries = kRec709;    ///< of linear colours
+    ColorEncoding display = kSrgbDisplay;  ///< of pictures for a display
     float pixel_aspect = 1;
     std::string first_view;  ///< whose layers have no view in their names; "" where the file names none
     std::vector<std::string> left_out;  ///< what no layer has: "smaller levels of the tiles of part 'a'"

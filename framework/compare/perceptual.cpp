@@ -68,14 +68,14 @@ FlipResult no_difference(const Image& image) {
     return result;
 }
 
-void measure_flip(const Image& reference, const Image& test, bool equal, const CompareRules& rules,
-                  LayerComparison& comparison) {
-    const Choice choice(rules.flip_choice, comparison.role);
+void measure_flip(const Image& reference, const Image& test, LayerRole role, bool equal,
+                  const CompareRules& rules, LayerComparison& comparison) {
+    const Choice choice(rules.flip_choice, role);
     if (!choice.ldr && !choice.hdr) return;
     FlipOptions options = rules.flip;
     options.threads = thread_count(rules.threads);
-    const Image r = linear_rgb(reference, comparison.role, rules.threads);
-    const Image t = linear_rgb(test, comparison.role, rules.threads);
+    const Image r = linear_rgb(reference, role, rules.threads);
+    const Image t = linear_rgb(test, role, rules.threads);
     if (choice.ldr) comparison.ldr_flip = equal ? no_difference(r) : ldr_flip(r, t, options);
     if (!choice.hdr) return;
     if (!equal) {
@@ -129,12 +129,31 @@ Image in_rec709(const Image& image, const Chromaticities& primaries) {
     return converted;
 }
 
+std::optional<LayerImages> in_srgb(const LayerImages& images) {
+    if (images.reference_display == kSrgbDisplay && images.test_display == kSrgbDisplay) return std::nullopt;
+    LayerImages converted = images;
+    for (const auto& [image, encoding] : {std::pair{&converted.reference, &converted.reference_display},
+                                          {&converted.test, &converted.test_display}}) {
+        if (*encoding != kSrgbDisplay) encode_display_as_srgb(*image, *encoding);
+        *encoding = kSrgbDisplay;
+    }
+    return converted;
+}
+
+/// Of sRGB-encoded values, which may be above 1.
+void decode(LayerImages& images) {
+    for (Image* image : {&images.reference, &images.test})
+        for (float& value : image->floats()) value = float(decode_srgb(double(value)));
+}
+
 }  // namespace
 
 std::optional<LayerImages> in_rec709(const LayerImages& images, LayerRole role) {
-    const bool is_light = role == LayerRole::color && images.reference.channels() == 3 &&
-                          images.reference.type() == ComponentType::float32;
-    if (!is_light || (images.reference_primaries == kRec709 && images.test_primaries == kRec709))
+    const int channels = images.reference.channels();
+    if (images.reference.type() != ComponentType::float32) return std::nullopt;
+    if (role == LayerRole::display && (channels == 1 || channels == 3)) return in_srgb(images);
+    if (channels != 3 || role != LayerRole::color ||
+        (images.reference_primaries == kRec709 && images.test_primaries == kRec709))
         return std::nullopt;
     LayerImages converted = images;
     for (const auto& [image, primaries] : {std::pair{&converted.reference, &converted.reference_primaries},
@@ -165,15 +184,19 @@ void measure_perceptually(const LayerImages& images, const CompareRules& rules, 
     const bool picture = channels == 1 || channels == 3;
     if (!is_perceptual(comparison.role) || !picture || images.reference.type() != ComponentType::float32)
         return;
-    const std::optional<LayerImages> converted = in_rec709(images, comparison.role);
+    std::optional<LayerImages> converted = in_rec709(images, comparison.role);
+    const bool is_hdr = converted && (images.reference_display.is_hdr() || images.test_display.is_hdr());
+    if (is_hdr) decode(*converted);
+    const LayerRole role = is_hdr ? LayerRole::color : comparison.role;
     const LayerImages& seen = converted ? *converted : images;
     const Image& reference = seen.reference;
     const bool equal = comparison.differences.bits_equal &&
-                       (!converted || images.reference_primaries == images.test_primaries);
+                       (!converted || (images.reference_primaries == images.test_primaries &&
+                                       images.reference_display == images.test_display));
     const bool leaves_out = comparison.differences.left_out > 0;
     const Image substituted = leaves_out ? with_reference_values(seen) : Image();
     const Image& test = leaves_out ? substituted : seen.test;
-    measure_flip(reference, test, equal, rules, comparison);
+    measure_flip(reference, test, role, equal, rules, comparison);
     if (leaves_out)
         for (std::optional<FlipResult>* flip : {&comparison.ldr_flip, &comparison.hdr_flip})
             if (*flip) leave_out(images.areas, **flip);
@@ -188,7 +211,7 @@ void measure_perceptually(const LayerImages& images, const CompareRules& rules, 
         if (scales) comparison.ms_ssim = 1;
         return;
     }
-    const auto [r, t] = encoded_pair(reference, test, comparison.role, rules.threads);
+    const auto [r, t] = encoded_pair(reference, test, role, rules.threads);
     const SsimFigures figures = ssim_figures(r, t, rules.threads, leaves_out ? images.areas : PixelAreas{},
                                              rules.ssim_map ? &comparison.ssim_map : nullptr);
     if (figures.measured) comparison.ssim = figures.ssim;

@@ -44,7 +44,8 @@ std::string raw_bytes(const Image& display, int channels) {
     return bytes;
 }
 
-std::string frame_bytes(StreamFormat format, const Image& display, const std::string& name) {
+std::string frame_bytes(StreamFormat format, const Image& display, const ColorEncoding& encoding,
+                        const std::string& name) {
     switch (format) {
         case StreamFormat::rgb24: return raw_bytes<std::uint8_t>(display, 3);
         case StreamFormat::rgba: return raw_bytes<std::uint8_t>(display, 4);
@@ -52,7 +53,7 @@ std::string frame_bytes(StreamFormat format, const Image& display, const std::st
         case StreamFormat::rgba64le: return raw_bytes<std::uint16_t>(display, 4);
         case StreamFormat::png: break;
     }
-    return encode_png(name, display, {}, {.is_srgb = true});
+    return encode_png(name, display, {}, {.display = encoding, .bits = encoding.is_hdr() ? 16 : 8});
 }
 
 /// "24", "23.98", "30000/1001".
@@ -107,7 +108,7 @@ Error FrameStream::fault(const std::string& what) const {
     return {ErrorKind::output, name_ + ": " + what};
 }
 
-void FrameStream::write(int frame, const Image& display) {
+void FrameStream::write(int frame, const Image& display, const ColorEncoding& encoding) {
     if (width_ > 0 && (display.width() != width_ || display.height() != height_))
         throw fault(
             fmt::format("frame {} has {} x {} px, but the frames before it have {} x {}; "
@@ -115,7 +116,7 @@ void FrameStream::write(int frame, const Image& display) {
                         frame, display.width(), display.height(), width_, height_));
     width_ = display.width();
     height_ = display.height();
-    send(frame_bytes(format_, display, name_));
+    send(frame_bytes(format_, display, encoding, name_));
     ++frames_;
 }
 

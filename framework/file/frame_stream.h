@@ -10,6 +10,7 @@
 
 #include "framework/base/child_process.h"
 #include "framework/base/error.h"
+#include "framework/image/color_encoding.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
@@ -44,8 +45,8 @@ public:
 
     /// The display-referred picture of a frame, 3 or 4 float channels, with 1 for an alpha that is not there;
     /// formats without alpha leave it out. Throws Error(ErrorKind::output) where the picture has another size
-    /// than the one before, or where the reader has gone.
-    void write(int frame, const Image& display);
+    /// than the one before, or where the reader has gone. A PNG says how the picture is encoded.
+    void write(int frame, const Image& display, const ColorEncoding& encoding = kSrgbDisplay);
 
 private:
     FrameStream(Descriptor descriptor, StreamFormat format, std::string name)

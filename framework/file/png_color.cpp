@@ -103,7 +103,50 @@ bool is_srgb_curve(Bytes tag) {
     });
 }
 
+using Curve = ColorEncoding::Curve;
+
+/// A row of ITU-T H.273, table 3.
+struct CurveCode {
+    int code;
+    Curve curve;
+    double gamma = 1;
+};
+/// BT.709's pictures are for the curve of BT.1886, a power of 2.4. The first of equal curves is written.
+constexpr std::array kCurveCodes = {
+    CurveCode{1, Curve::gamma, 2.4}, CurveCode{4, Curve::gamma, 2.2},  CurveCode{8, Curve::linear},
+    CurveCode{13, Curve::srgb},      CurveCode{16, Curve::pq},         CurveCode{18, Curve::hlg},
+    CurveCode{6, Curve::gamma, 2.4}, CurveCode{14, Curve::gamma, 2.4}, CurveCode{15, Curve::gamma, 2.4}};
+/// Table 2.
+constexpr std::array<std::pair<int, std::string_view>, 3> kPrimariesCodes = {
+    {{1, "rec709"}, {9, "rec2020"}, {12, "p3d65"}}};
+
+std::optional<ColorEncoding> encoding_of_cicp(Bytes data) {
+    const auto primaries =
+        std::ranges::find(kPrimariesCodes, int(data[0]), [](const auto& row) { return row.first; });
+    const auto curve = std::ranges::find(kCurveCodes, int(data[1]), &CurveCode::code);
+    // Only RGB of the full range.
+    if (primaries == kPrimariesCodes.end() || curve == kCurveCodes.end() || data[2] != 0 || data[3] != 1)
+        return std::nullopt;
+    return ColorEncoding{*color_space_primaries(primaries->second), curve->curve, curve->gamma};
+}
+
+/// Chunks round.
+Chromaticities nearest_primaries(const Chromaticities& primaries) {
+    return color_space_primaries(name_of_primaries(primaries)).value_or(primaries);
+}
+
 }  // namespace
+
+std::optional<std::pair<int, int>> cicp_of(const ColorEncoding& encoding) {
+    const std::string name = name_of_primaries(encoding.primaries);
+    for (const auto& [primaries, space] : kPrimariesCodes)
+        for (const CurveCode& curve : kCurveCodes)
+            // The curve of BT.709 stands for its own gamut and that of BT.2020.
+            if (space == name && curve.curve == encoding.curve && curve.gamma == encoding.gamma &&
+                (curve.code != 1 || primaries != 12))
+                return std::pair(primaries, curve.code);
+    return std::nullopt;
+}
 
 bool is_srgb_profile(Bytes profile) {
     constexpr std::size_t kColorSpace = 16;
@@ -136,6 +179,7 @@ void PngColorReader::read(const std::string& type, Bytes data) {
         // ITU-T H.273: primaries of BT.709, sRGB's curve, RGB, full range.
         if (!std::ranges::equal(data, std::array<unsigned char, 4>{1, 13, 0, 1}))
             cicp_ = fmt::format("cICP {} {} {} {}", data[0], data[1], data[2], data[3]);
+        of_cicp_ = encoding_of_cicp(data);
     } else if (type == "iCCP") {
         const auto end = std::ranges::find(data, 0);
         if (data.end() - end < 2) return;  // after the name a method, which is always zlib's
@@ -152,6 +196,9 @@ void PngColorReader::read(const std::string& type, Bytes data) {
     } else if (type == "cHRM" && data.size() == 32) {
         constexpr std::array<double, 8> kSrgb = {0.3127, 0.3290, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06};
         bool is_srgb = true;
+        // The white point comes first in the chunk.
+        for (std::size_t i = 0; i < kSrgb.size(); ++i)
+            of_chrm_[(i + 6) % kSrgb.size()] = float(number_at(data, 4 * i) / 1e5);
         std::string text = "primaries";
         for (std::size_t i = 0; i < kSrgb.size(); ++i) {
             is_srgb &= std::abs(number_at(data, 4 * i) / 1e5 - kSrgb[i]) <= 0.001;
@@ -171,10 +218,14 @@ PngColor PngColorReader::color() const {
         if (!space.empty()) color.space = space;
         return color;
     };
+    if (has_cicp_) color.encoding = of_cicp_;
     if (has_cicp_) return take(cicp_);
+    if (has_icc_ && !icc_.empty()) color.encoding.reset();
     if (has_icc_) return take(icc_);
     if (has_srgb_) return color;
     color.gamma = gamma_;
+    if (gamma_) color.encoding = {kRec709, ColorEncoding::Curve::gamma, 1 / *gamma_};
+    if (!primaries_.empty()) color.encoding->primaries = nearest_primaries(of_chrm_);
     return take(primaries_);
 }
 

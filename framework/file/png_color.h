@@ -5,6 +5,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+
+#include "framework/image/color_encoding.h"
 
 namespace aftershade {
 
@@ -17,6 +20,8 @@ struct PngColor {
     /// The value of gAMA, where it differs from sRGB's and no other chunk counts: light is the sample to the
     /// power 1 / gamma.
     std::optional<double> gamma;
+    /// How the samples are encoded, where that is known: not by an ICC profile other than sRGB's.
+    std::optional<ColorEncoding> encoding = kSrgbDisplay;
     bool is_animated = false;  ///< there are further pictures
     float pixel_aspect = 1;    ///< width over height, by pHYs
     int bits = 8;              ///< of a sample
@@ -34,11 +39,17 @@ public:
 
 private:
     std::string cicp_, icc_, primaries_;
+    std::optional<ColorEncoding> of_cicp_ = kSrgbDisplay;
+    Chromaticities of_chrm_ = kRec709;
     std::optional<double> gamma_;
     bool has_cicp_ = false, has_icc_ = false, has_srgb_ = false, is_animated_ = false;
     float pixel_aspect_ = 1;
     int bits_ = 8;
 };
+
+/// The code points of ITU-T H.273 for the primaries and the curve, as the chunk cICP has them; nullopt where
+/// there are none.
+std::optional<std::pair<int, int>> cicp_of(const ColorEncoding& encoding);
 
 /// Whether an ICC profile is that of sRGB: of a display, its three colorants and a curve that is sRGB's or
 /// its approximation, a power of 2.2.

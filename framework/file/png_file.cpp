@@ -11,6 +11,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -22,6 +23,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #define STBI_ONLY_PNG
@@ -84,6 +86,25 @@ std::string aspect_chunk(float pixel_aspect) {
     return chunk("pHYs", along(1 / larger) + along(double(pixel_aspect) / larger) + '\0');
 }
 
+/// PNG specification, third edition, 11.3.2: cICP where it has the code points, and gAMA and cHRM for
+/// programs that do not read it.
+std::string color_chunks(const ColorEncoding& encoding) {
+    const std::string perceptual(1, '\0');  // the rendering intent
+    if (encoding == kSrgbDisplay) return chunk("sRGB", perceptual);
+    if (!encoding.is_color()) return "";
+    std::string chunks;
+    if (const auto codes = cicp_of(encoding))
+        chunks += chunk("cICP", {char(codes->first), char(codes->second), 0, 1});
+    const auto fixed = [](double value) { return number_text(std::uint32_t(std::lround(value * 1e5))); };
+    if (encoding.curve == ColorEncoding::Curve::gamma || encoding.is_light())
+        chunks += chunk("gAMA", fixed(1 / encoding.gamma));
+    else if (encoding.curve == ColorEncoding::Curve::srgb) chunks += chunk("gAMA", fixed(1 / 2.2));
+    const Chromaticities& xy = encoding.primaries;
+    std::string primaries = fixed(double(xy[6])) + fixed(double(xy[7]));
+    for (std::size_t i = 0; i < 6; ++i) primaries += fixed(double(xy[i]));
+    return chunks + chunk("cHRM", primaries);
+}
+
 std::string read_bytes(const fs::path& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) fail(path, "is a folder, not a PNG file");
@@ -117,33 +138,70 @@ void check_chunks(const fs::path& path, std::span<const unsigned char> bytes,
     fail(path, fmt::format("damaged: cut off, {} bytes do not reach its last chunk", bytes.size()));
 }
 
+Error no_memory(const std::string& name) {
+    return {ErrorKind::memory, name + ": " + out_of_memory_text(std::bad_alloc())};
+}
+
+std::string png_of_8_bits(const std::string& name, const Image& display) {
+    const std::span<const float> values = display.floats();
+    std::vector<std::uint8_t> bytes(values.size());
+    std::ranges::transform(values, bytes.begin(), quantized<std::uint8_t>);
+    Sink sink;
+    const int written =
+        stbi_write_png_to_func(write_to_sink, &sink, display.width(), display.height(), display.channels(),
+                               bytes.data(), display.width() * display.channels());
+    if (sink.failure) std::rethrow_exception(sink.failure);
+    if (written == 0) throw no_memory(name);
+    return std::move(sink.bytes);
+}
+
+/// Which stb does not write. Rows have the filter Up, PNG specification, 9.2.
+std::string png_of_16_bits(const std::string& name, const Image& display) {
+    const std::size_t row_bytes = std::size_t(display.width()) * std::size_t(display.channels()) * 2;
+    std::string rows, above(row_bytes, '\0'), row(row_bytes, '\0');
+    rows.reserve((row_bytes + 1) * std::size_t(display.height()));
+    const std::span<const float> values = display.floats();
+    for (std::size_t at = 0; at < values.size(); above.swap(row)) {
+        for (std::size_t i = 0; i < row_bytes; i += 2, ++at) {
+            const auto sample = quantized<std::uint16_t>(values[at]);
+            row[i] = char(sample >> 8);
+            row[i + 1] = char(sample);
+        }
+        constexpr char kUp = 2;
+        rows += kUp;
+        for (std::size_t i = 0; i < row_bytes; ++i) rows += char(row[i] - above[i]);
+    }
+    uLongf size = compressBound(uLong(rows.size()));
+    std::string packed(size, '\0');
+    if (compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(rows.data()),
+                 uLong(rows.size())) != Z_OK)
+        throw no_memory(name);
+    packed.resize(size);
+    constexpr std::array<char, 5> kColorTypes = {0, 0, 4, 2, 6};  // by channels
+    const std::string head = number_text(std::uint32_t(display.width())) +
+                             number_text(std::uint32_t(display.height())) + '\x10' +
+                             kColorTypes[std::size_t(display.channels())] + std::string(3, '\0');
+    return "\x89PNG\r\n\x1a\n" + chunk("IHDR", head) + chunk("IDAT", packed) + chunk("IEND", "");
+}
+
 }  // namespace
 
 std::string encode_png(const std::string& name, const Image& display, const PngText& text,
                        const PngMeaning& meaning) {
-    const int channels = display.channels();
-    assert(channels == 1 || channels == 3 || channels == 4);
+    assert(display.channels() == 1 || display.channels() == 3 || display.channels() == 4);
     assert(!display.empty());
     if (display.width() > kMaxSidePx || display.height() > kMaxSidePx) {
         throw Error(ErrorKind::output,
                     fmt::format("{}: {} x {} px is too large for PNG output, the limit is {} px a side", name,
                                 display.width(), display.height(), kMaxSidePx));
     }
-    const std::span<const float> values = display.floats();
-    std::vector<std::uint8_t> bytes(values.size());
-    std::ranges::transform(values, bytes.begin(), quantized<std::uint8_t>);
-
-    Sink sink;
-    const int written = stbi_write_png_to_func(write_to_sink, &sink, display.width(), display.height(),
-                                               channels, bytes.data(), display.width() * channels);
-    if (sink.failure) std::rethrow_exception(sink.failure);
-    if (written == 0) throw Error(ErrorKind::memory, name + ": " + out_of_memory_text(std::bad_alloc()));
+    assert(meaning.bits == 8 || meaning.bits == 16);
+    std::string file = meaning.bits == 16 ? png_of_16_bits(name, display) : png_of_8_bits(name, display);
     constexpr std::size_t kSizeChunkBytes = kChunkHeadBytes + 13 + kChecksumBytes;  // IHDR, the first
-    const std::string perceptual(1, '\0');                                          // the rendering intent
-    std::string chunks = meaning.is_srgb ? chunk("sRGB", perceptual) : "";
+    std::string chunks = meaning.display ? color_chunks(*meaning.display) : "";
     for (const auto& [keyword, value] : text) chunks += chunk("tEXt", keyword + '\0' + value);
     if (meaning.pixel_aspect != 1) chunks += aspect_chunk(meaning.pixel_aspect);
-    return sink.bytes.insert(kSignatureBytes + kSizeChunkBytes, chunks);
+    return file.insert(kSignatureBytes + kSizeChunkBytes, chunks);
 }
 
 void write_png(const fs::path& path, const Image& display, const PngText& text, const PngMeaning& meaning) {

@@ -1,4 +1,4 @@
-// PNG through stb: output of 8 bits a channel, input of 8 or 16.
+// PNG of 8 or 16 bits a channel.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "framework/file/png_color.h"
+#include "framework/image/color_encoding.h"
 #include "framework/image/image.h"
 
 namespace aftershade {
@@ -16,13 +17,14 @@ using PngText = std::map<std::string, std::string>;
 
 /// The information in a picture's chunks.
 struct PngMeaning {
-    bool is_srgb = false;    ///< chunk sRGB; false colours and measures are not a display's
-    float pixel_aspect = 1;  ///< width over height; other than 1 in the chunk pHYs
+    std::optional<ColorEncoding> display{};  ///< none, or an unknown curve: false colours and measures
+    float pixel_aspect = 1;                  ///< width over height; other than 1 in the chunk pHYs
+    int bits = 8;                            ///< of a sample: 8 or 16
 };
 
 /// The bytes of a PNG of display-referred values in [0, 1], already encoded, of 1, 3 or 4 float channels:
-/// round(255 * clamp(v)), NaN as 0. A fourth channel is unassociated alpha. `name` is what the
-/// Error(ErrorKind::output) of a picture that is too large begins with.
+/// round(255 * clamp(v)), or 65535 instead of 255, NaN as 0. A fourth channel is unassociated alpha. `name`
+/// is what the Error(ErrorKind::output) of a picture that is too large begins with.
 std::string encode_png(const std::string& name, const Image& display, const PngText& text = {},
                        const PngMeaning& meaning = {});
 

@@ -121,7 +121,8 @@ void Result::write(const std::filesystem::path& path, const WriteOptions& option
         const CaptureReader unused(sequence, {}, {});
         FrameResult result;
         result.images = data_->frame->images;
-        result.has_srgb_display = data_->frame->has_srgb_display;
+        result.display_encoding = data_->frame->display_encoding;
+        result.color_encoding = data_->frame->color_encoding;
         write_outputs(outputs, result, *data_->capture, unused);
     });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "framework/image/srgb.h"
@@ -191,6 +192,60 @@ void decode_curve(Image& image, const ColorEncoding& encoding) {
 
 void encode_curve(Image& image, const ColorEncoding& encoding) {
     apply_curve(image, encoding, encoded);
+}
+
+namespace {
+
+constexpr double kWhite_cd_m2 = 203;
+
+/// SMPTE ST 2084:2014, 5.2, cd/m^2.
+double pq_cd_m2(double value) {
+    constexpr double kM1 = 2610.0 / 16384, kM2 = 2523.0 / 32, kC1 = 3424.0 / 4096, kC2 = 2413.0 / 128,
+                     kC3 = 2392.0 / 128;
+    const double root = std::pow(std::clamp(value, 0.0, 1.0), 1 / kM2);
+    return 10000 * std::pow(std::max(root - kC1, 0.0) / (kC2 - kC3 * root), 1 / kM1);
+}
+
+/// The scene's light, ITU-R BT.2100-2, table 5.
+double hlg_scene(double value) {
+    constexpr double kA = 0.17883277, kB = 1 - 4 * kA, kC = 0.55991073;
+    return value <= 0.5 ? value * value / 3 : (std::exp((value - kC) / kA) + kB) / 12;
+}
+
+constexpr double kHlgGamma = 1.2, kHlgPeak_cd_m2 = 1000;
+
+}  // namespace
+
+double display_light(double value, const ColorEncoding& encoding) {
+    const double seen = std::max(value, 0.0);
+    if (encoding.curve == Curve::pq) return pq_cd_m2(seen) / kWhite_cd_m2;
+    if (encoding.curve == Curve::hlg)
+        return std::pow(hlg_scene(seen), kHlgGamma) * kHlgPeak_cd_m2 / kWhite_cd_m2;
+    return decoded(seen, encoding);
+}
+
+void encode_display_as_srgb(Image& image, const ColorEncoding& encoding) {
+    const ColorMatrix to_rec709 = conversion_matrix(encoding.primaries, kRec709);
+    const ColorMatrix to_xyz = conversion_matrix(encoding.primaries, kXyz);
+    const std::span<float> values = image.floats();
+    const std::size_t stored = std::size_t(image.channels()), colors = stored < 3 ? 1 : 3;
+    for (std::size_t i = 0; i < values.size(); i += stored) {
+        std::array<double, 3> light{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double value = std::max(double(values[i + (colors == 1 ? 0 : c)]), 0.0);
+            light[c] = encoding.curve == Curve::hlg ? hlg_scene(value) : display_light(value, encoding);
+        }
+        if (encoding.curve == Curve::hlg) {  // BT.2100's system gamma is of the luminance
+            const double y = to_xyz[3] * light[0] + to_xyz[4] * light[1] + to_xyz[5] * light[2];
+            const double factor = std::pow(std::max(y, 1e-9), kHlgGamma - 1) * kHlgPeak_cd_m2 / kWhite_cd_m2;
+            for (double& channel : light) channel *= factor;
+        }
+        for (std::size_t row = 0; row < colors; ++row) {
+            double converted = 0;
+            for (std::size_t k = 0; k < 3; ++k) converted += to_rec709[row * 3 + k] * light[k];
+            values[i + row] = float(encode_srgb(std::max(converted, 0.0)));
+        }
+    }
 }
 
 }  // namespace aftershade

@@ -16,17 +16,24 @@ struct ColorEncoding {
         srgb,     ///< IEC 61966-2-1
         rec709,   ///< ITU-R BT.709's camera curve
         gamma,    ///< light is the number to the power of `gamma`
-        unknown,  ///< log, PQ, HLG: this program has no such curve
+        pq,       ///< SMPTE ST 2084, of displays
+        hlg,      ///< hybrid log-gamma of ITU-R BT.2100, on a display of 1000 cd/m^2
+        unknown,  ///< such as a logarithm: this program has no such curve
         data      ///< the numbers are not colours
     };
     Chromaticities primaries = kRec709;
     Curve curve = Curve::linear;
     double gamma = 1;
 
+    /// Whether a display shows more than diffuse white.
+    bool is_hdr() const { return curve == Curve::pq || curve == Curve::hlg; }
     bool is_light() const { return curve == Curve::linear; }
     bool is_color() const { return curve != Curve::unknown && curve != Curve::data; }
     bool operator==(const ColorEncoding&) const = default;
 };
+
+/// Of the screen of IEC 61966-2-1.
+inline constexpr ColorEncoding kSrgbDisplay{kRec709, ColorEncoding::Curve::srgb, 1};
 
 /// By a name of the Color Interop Forum ("lin_ap1_scene", "g22_rec709_scene", "data"), or one that
 /// OpenImageIO and OpenColorIO's usual configurations have for the same ("ACEScg", "Linear Rec.2020"); case
@@ -42,5 +49,12 @@ std::string color_interop_id(const ColorEncoding& encoding);
 /// has.
 void decode_curve(Image& image, const ColorEncoding& encoding);
 void encode_curve(Image& image, const ColorEncoding& encoding);
+
+/// Light of a grey on a display: 1 is its white; of PQ and HLG it is 203 cd/m^2, ITU-R BT.2408's white.
+double display_light(double value, const ColorEncoding& encoding);
+
+/// The colours of a picture for a display, of 1 to 4 channels, as sRGB encodes that light: above 1 where it
+/// is brighter than white. Values below 0 count as 0. A known curve.
+void encode_display_as_srgb(Image& image, const ColorEncoding& encoding);
 
 }  // namespace aftershade

@@ -1,11 +1,8 @@
 #include "framework/look/color_requests.h"
 
-#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
-
-#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -36,15 +33,6 @@ std::vector<StepColorRequest> color_requests(const PipelineStep& step) {
             if (!request.is_file || !request.path.empty()) all.push_back({&file, request});
     }
     return all;
-}
-
-bool has_srgb_display(const Pipeline& pipeline) {
-    const auto makes_display = [](const PipelineStep& step) {
-        return std::ranges::find(step.manifest->outputs, kDisplayRole, &OutputSpec::role) !=
-               step.manifest->outputs.end();
-    };
-    const auto last = std::find_if(pipeline.steps.rbegin(), pipeline.steps.rend(), makes_display);
-    return last == pipeline.steps.rend() || std::ranges::none_of(last->manifest->params, is_ocio_file);
 }
 
 void check_color_requests(const PipelineStep& step, const Place& place, Diagnostics& diagnostics) {

@@ -16,10 +16,6 @@ struct StepColorRequest {
 /// With every value that the step's parameters may have in any frame.
 std::vector<StepColorRequest> color_requests(const PipelineStep& step);
 
-/// Whether the image `display` is encoded for sRGB: not where its last step takes a config of OpenColorIO,
-/// whose display may be any.
-bool has_srgb_display(const Pipeline& pipeline);
-
 /// Reports those that OpenColorIO cannot meet, each at the value that is at fault, else at `place`.
 void check_color_requests(const PipelineStep& step, const Place& place, Diagnostics& diagnostics);
 

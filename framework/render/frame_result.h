@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/graph/executor.h"
+#include "framework/image/color_encoding.h"
 #include "framework/image/image.h"
 #include "framework/render/audit.h"
 #include "framework/render/telemetry.h"
@@ -23,7 +24,9 @@ struct FrameResult {
     std::optional<Window> region;             ///< the part of the display window that was requested
     std::vector<std::string> messages;        ///< what native code logged
     std::optional<FrameTelemetry> telemetry;  ///< where it was requested
-    bool has_srgb_display = true;             ///< see has_srgb_display() (framework/look/color_requests.h)
+    ColorEncoding display_encoding = kSrgbDisplay;  ///< of the image `display`; its curve may be unknown
+    /// Of the image `color`, if it is not light in the capture's primaries.
+    std::optional<ColorEncoding> color_encoding;
     std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
 };
 

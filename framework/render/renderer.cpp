@@ -8,11 +8,11 @@
 #include "framework/base/error.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/role.h"
-#include "framework/look/color_requests.h"
 #include "framework/look/pixel_shape.h"
 #include "framework/render/draw_with.h"
 #include "framework/render/graph_builder.h"
 #include "framework/render/history_file.h"
+#include "framework/render/result_encodings.h"
 
 namespace aftershade {
 
@@ -220,7 +220,6 @@ PendingFrame PipelineRenderer::begin(const FrameInputs& frame, const std::vector
     PendingFrame pending(context_);
     pending.is_timed = timed;
     FrameResult& result = pending.result;
-    result.has_srgb_display = has_srgb_display(pipeline_);
     result.messages = natives_.take_messages();
     const float aspect = frame.capture->header.pixel_aspect;
     if (aspect != std::exchange(aspect_, aspect))
@@ -263,6 +262,7 @@ PendingFrame PipelineRenderer::begin(const FrameInputs& frame, const std::vector
                 audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
     issue_passes({first_pass, -1}, pending);
     begin_reads(roles, pending);
+    set_encodings(pipeline_, files_, result);
     if (options_.telemetry) result.telemetry = read_telemetry(header.frame);
     steps_drawn_ = int(pipeline_.steps.size());
     mixes_drawn_ = mixes();

@@ -46,6 +46,13 @@ const std::map<std::string, ParamFile>& StepFiles::of_step(int index, const Pipe
     return (steps_[index] = std::move(loaded)).files;
 }
 
+const ParamFile* StepFiles::loaded(int index, const std::string& param) const {
+    const auto step = steps_.find(index);
+    if (step == steps_.end()) return nullptr;
+    const auto file = step->second.files.find(param);
+    return file == step->second.files.end() ? nullptr : &file->second;
+}
+
 const Image& StepFiles::mask_of(const std::filesystem::path& path) {
     const auto known = masks_.find(path);
     if (known != masks_.end()) return known->second;

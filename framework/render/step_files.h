@@ -17,6 +17,8 @@ public:
     /// The content of a step's file parameters. Throws Error(ErrorKind::usage) with every fault of the files.
     const std::map<std::string, ParamFile>& of_step(int index, const PipelineStep& step,
                                                     const ParamReader& params);
+    /// The content of a file parameter as of_step() has last given it; null where it has given none.
+    const ParamFile* loaded(int index, const std::string& param) const;
     /// The mask of a step: one channel, r32f. Throws Error(ErrorKind::usage).
     const Image& mask_of(const std::filesystem::path& path);
 

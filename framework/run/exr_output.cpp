@@ -93,9 +93,23 @@ bool is_id_channel(const ExrOutputChannel& channel, const CaptureHeader& header)
     return is_role || channel.type == PixelType::uint32 || channel.name.find("Crypto") != std::string::npos;
 }
 
+/// Of colours that a step has converted. An unknown id counts before the file's chromaticities, which say no
+/// curve.
+void name_converted_space(ExrWriteOptions& write, const ColorEncoding& color) {
+    write.left_behind = color_space_attributes();
+    const std::string id = color_interop_id(color);
+    write.attributes["colorInteropID"] = id.empty() ? "unknown" : id;
+    if (color.is_color())
+        write.attributes["chromaticities"] =
+            std::vector<float>(color.primaries.begin(), color.primaries.end());
+    else write.left_behind.emplace_back("chromaticities");
+}
+
 /// An attribute of the input's pixels is not always true of the output's: kept channels stay as they are
 /// stored, and all others are light. Where the space is assumed, nothing is added to what the file says.
-void name_color_space(ExrWriteOptions& write, const OutputOptions& options, const CaptureHeader& header) {
+void name_color_space(ExrWriteOptions& write, const OutputOptions& options, const CaptureHeader& header,
+                      const std::optional<ColorEncoding>& color) {
+    if (color && !options.keep_channels) return name_converted_space(write, *color);
     const ColorEncoding light{header.primaries, ColorEncoding::Curve::linear, 1};
     const ColorEncoding& written = options.keep_channels ? header.stored_colors.encoding : light;
     // A file without the attribute is Rec. 709, so colours of other primaries must say so.
@@ -156,7 +170,8 @@ const Image* find_image(const std::string& role, const FrameResult& result, cons
     return nullptr;
 }
 
-ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHeader& header) {
+ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHeader& header,
+                                  const std::optional<ColorEncoding>& color) {
     ExrWriteOptions write;
     write.data_window = header.data_window;
     write.display_window = header.display_window;
@@ -170,7 +185,7 @@ ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHea
     write.attributes["aftershade/channels"] = std::string(options.keep_channels ? "kept" : "native");
     write.attributes["aftershade/frame"] = header.frame;
     add_attributes(header.camera, header.lights, write.attributes);
-    name_color_space(write, options, header);
+    name_color_space(write, options, header, color);
     return write;
 }
 
@@ -199,7 +214,9 @@ std::string write_exr_output(const std::filesystem::path& path, const OutputOpti
         drop_channels(content, find_role(name)->native_channels);
         add_role(content, *find_role(name), *image, options.color_type);
     }
-    ExrWriteOptions write = exr_write_options(options, capture.header);
+    const bool has_color = std::ranges::find(options.roles, kColorRole) != options.roles.end();
+    ExrWriteOptions write =
+        exr_write_options(options, capture.header, has_color ? result.color_encoding : std::nullopt);
     refuse_lossy_data(path, content, capture.header, options);
     if (options.crop_to_display) {
         crop(content, write.data_window, write.display_window);

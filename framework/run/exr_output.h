@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "framework/capture/capture.h"
@@ -14,7 +15,8 @@ namespace aftershade {
 const Image* find_image(const std::string& role, const FrameResult& result, const Capture& capture);
 
 /// Windows and attributes of a frame's outputs.
-ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHeader& header);
+ExrWriteOptions exr_write_options(const OutputOptions& options, const CaptureHeader& header,
+                                  const std::optional<ColorEncoding>& color = std::nullopt);
 
 /// The roles asked for, under native names. With `options.keep_channels`, all channels of the source under
 /// their own names instead, those of roles that a step changed re-encoded to the source's conventions, and

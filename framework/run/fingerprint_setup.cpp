@@ -54,6 +54,7 @@ std::string outputs_text(const OutputOptions& outputs, const RunOptions& run) {
     text += outputs.color_type == PixelType::half ? "\nhalf" : "\nfloat";
     if (outputs.keep_channels) text += "\nkeeps channels";
     if (outputs.crop_to_display) text += "\ncropped";
+    if (outputs.png_bits != 0) text += "\nPNG of " + std::to_string(outputs.png_bits) + " bits";
     text += "\n" + outputs.compression + "\nscale 1/" + std::to_string(run.scale_divisor);
     if (run.on_nan == NanPolicy::mend) text += " mended";
     if (run.region)

@@ -39,11 +39,22 @@ double share_above_1(const Image& picture) {
 Image display_picture(const FrameResult& result, const Capture& capture) {
     const auto made = result.images.find(kDisplayRole);
     const CaptureHeader& header = capture.header;
-    const Image display = made != result.images.end()
-                              ? made->second
-                              : display_of_color(*find_image(kColorRole, result, capture), header.primaries);
+    const Image display =
+        made != result.images.end()
+            ? made->second
+            : display_of_color(*find_image(kColorRole, result, capture),
+                               result.color_encoding ? result.color_encoding->primaries : header.primaries);
     return cropped_display(display, header.data_window, result.region.value_or(header.display_window),
                            header.keeps_alpha);
+}
+
+ColorEncoding display_encoding(const FrameResult& result) {
+    return result.images.contains(kDisplayRole) ? result.display_encoding : kSrgbDisplay;
+}
+
+/// 8 bits of PQ or HLG show bands.
+int png_bits(const OutputOptions& options, const ColorEncoding& encoding) {
+    return options.png_bits != 0 ? options.png_bits : encoding.is_hdr() ? 16 : 8;
 }
 
 PngText png_text(const OutputOptions& options) {
@@ -87,7 +98,7 @@ void write_false_color(const fs::path& path, const Image& image, const OutputOpt
             const DisplayColor color = colors.color(x, y);
             for (int c = 0; c < 3; ++c) picture.at(x, y, c) = color[std::size_t(c)];
         }
-    write_png(path, picture, png_text(options), {false, header.pixel_aspect});
+    write_png(path, picture, png_text(options), {std::nullopt, header.pixel_aspect});
 }
 
 void write_tap(const fs::path& path, const Image& image, const OutputOptions& options,
@@ -231,12 +242,14 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
             const Image picture = display_picture(result, capture);
             if (!result.images.contains(kDisplayRole)) written.share_cut = share_above_1(picture);
             write_png(path, picture, png_text(options),
-                      {result.has_srgb_display, capture.header.pixel_aspect});
+                      {display_encoding(result), capture.header.pixel_aspect,
+                       png_bits(options, display_encoding(result))});
         } else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
             written.warnings.push_back(std::move(lost));
         written.paths.push_back(path);
     }
-    if (options.stream) options.stream->write(frame, display_picture(result, capture));
+    if (options.stream)
+        options.stream->write(frame, display_picture(result, capture), display_encoding(result));
     for (const auto& [tap, image] : result.taps) {
         const fs::path path = path_of_tap(options, tap, frame);
         if (!options.tap_patterns.contains(tap)) path_below(path.parent_path(), path.filename());

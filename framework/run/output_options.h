@@ -21,6 +21,7 @@ struct OutputOptions {
     bool keep_channels = false;               ///< EXR: every channel of the source too, under its own name
     bool crop_to_display = false;     ///< EXR: the display window's pixels only; PNG always has just these
     std::string compression = "zip";  ///< EXR
+    int png_bits = 0;                 ///< of a sample of PNG: 8 or 16; 0: 16 of PQ and HLG, else 8
     std::string look{};               ///< written as attribute aftershade/look
     std::string renderer{};           ///< GL_RENDERER, written as attribute aftershade/renderer
     std::string fingerprint{};        ///< of what the frame is made of: kFingerprintName; "" for none

@@ -325,8 +325,7 @@ const Image& PictureMaker::made_color(const PictureRequest& request) {
 }
 
 nlohmann::ordered_json PictureMaker::metrics(const PictureRequest& request, const std::string& name) {
-    const Image& reference = truth(request.frame, name).images.at(kColorRole);
-    return metrics_json(name, reference, made_color(request));
+    return metrics_json(name, truth(request.frame, name), made_color(request));
 }
 
 /// By channel, in linear light, so that the viewer's exposure makes small ones visible.

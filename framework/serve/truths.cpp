@@ -15,6 +15,8 @@
 #include "framework/compare/flip.h"
 #include "framework/compare/metrics.h"
 #include "framework/file/exr_file.h"
+#include "framework/file/stored_colors.h"
+#include "framework/image/color_space.h"
 #include "framework/image/role.h"
 #include "framework/serve/refusal.h"
 
@@ -94,7 +96,10 @@ Capture read_truth(const Sequence& sequence, int frame, const std::string& name,
     const ExrFile file(of_frame->second.at(name), limits);
     Capture truth;
     truth.header = header;
-    const Image color = file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
+    Image color = file.read_floats(0, std::vector<std::string>{"R", "G", "B"});
+    const ExrMetadata& metadata = file.parts().front().metadata;
+    if (const StoredColors stored = stored_colors(metadata, metadata); stored.is_known())
+        light_of_stored(color, stored, header.primaries, of_frame->second.at(name).string());
     const Window& window = header.data_window;
     if (color.width() != window.width() || color.height() != window.height())
         throw Refusal{409,
@@ -121,8 +126,11 @@ Image absolute_difference(const Image& truth, const Image& test) {
     return apart;
 }
 
-nlohmann::ordered_json metrics_json(const std::string& name, const Image& truth, const Image& color) {
-    const Image reference = rgb_of(truth), test = rgb_of(color);
+nlohmann::ordered_json metrics_json(const std::string& name, const Capture& truth, const Image& color) {
+    Image reference = rgb_of(truth.images.at(kColorRole)), test = rgb_of(color);
+    if (const Chromaticities& primaries = truth.header.primaries; primaries != kRec709)
+        for (Image* image : {&reference, &test})
+            convert_colors(*image, conversion_matrix(primaries, kRec709));
     const double psnr_db = display_psnr_db(reference, test);
     nlohmann::ordered_json json = {{"truth", name}};
     if (std::isfinite(psnr_db)) json["psnr_db"] = psnr_db;

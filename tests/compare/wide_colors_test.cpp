@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <string>
@@ -9,7 +10,9 @@
 
 #include "framework/compare/difference_picture.h"
 #include "framework/compare/perceptual.h"
+#include "framework/file/png_file.h"
 #include "framework/image/color_space.h"
+#include "framework/image/srgb.h"
 #include "tests/compare/pictures.h"
 
 namespace aftershade {
@@ -101,6 +104,45 @@ TEST_F(WideColors, AreOtherLightAsTheSameNumbersInAnotherSpace) {
     EXPECT_LT(*other.ssim, 0.999);
     write("r.exr", pictures_[0], "acescg");
     EXPECT_EQ(compared().hdr_flip->mean, 0);
+}
+
+/// By the curves of ST 2084 and BT.2100, written again.
+double pq_of(double cd_m2) {
+    const double m1 = 0.1593017578125, y = std::pow(cd_m2 / 10000, m1);
+    return std::pow((0.8359375 + 18.8515625 * y) / (1 + 18.6875 * y), 78.84375);
+}
+
+TEST_F(WideColors, OfAPngOfPqAreComparedAsTheirLight) {
+    const ColorEncoding pq{kRec709, ColorEncoding::Curve::pq, 1};
+    const auto encoded = [](const Image& light) {
+        return test::picture(kSide_px, kSide_px, 3, [&](int x, int y, int c) {
+            return float(pq_of(203 * double(light.at(x, y, c))));
+        });
+    };
+    write("r.exr", pictures_[0], "rec709");
+    write("t.exr", pictures_[1], "rec709");
+    const LayerComparison expected = compared(FlipChoice::automatic);
+    write_png(folder_ / "r.png", encoded(pictures_[0]), {}, {pq, 1, 16});
+    write_png(folder_ / "t.png", encoded(pictures_[1]), {}, {pq, 1, 16});
+    const LayerComparison layer = compare_files(folder_ / "r.png", folder_ / "t.png", {}).layers.at(0);
+    EXPECT_FALSE(layer.ldr_flip);
+    EXPECT_NEAR(layer.hdr_flip->mean, expected.hdr_flip->mean, 2e-3);
+    EXPECT_NEAR(*layer.ssim, *expected.ssim, 2e-3);
+}
+
+TEST_F(WideColors, OfAPngOfAnotherDisplayAreTheSameLight) {
+    const ColorEncoding broadcast{kRec709, ColorEncoding::Curve::gamma, 2.4};
+    const auto power = [&](double gamma) {
+        return test::picture(kSide_px, kSide_px, 3, [&](int x, int y, int c) {
+            return std::pow(pictures_[0].at(x, y, c), float(1 / gamma));
+        });
+    };
+    const Image srgb = test::picture(kSide_px, kSide_px, 3, [&](int x, int y, int c) {
+        return float(encode_srgb(double(pictures_[0].at(x, y, c))));
+    });
+    write_png(folder_ / "r.png", srgb, {}, {kSrgbDisplay, 1, 16});
+    write_png(folder_ / "t.png", power(2.4), {}, {broadcast, 1, 16});
+    EXPECT_LT(compare_files(folder_ / "r.png", folder_ / "t.png", {}).layers.at(0).ldr_flip->mean, 1e-3);
 }
 
 TEST_F(WideColors, KeepPixelsThatAreNotFinite) {

@@ -191,7 +191,36 @@ TEST(Png, SaysThatItIsSrgbWhereItIs) {
     const std::string chunk = png_number(1) + "sRGB" + std::string(1, '\0');
     EXPECT_EQ(encode_png("", grey).find("sRGB"), std::string::npos);
     // PNG specification, 5.6: before the pixels.
-    EXPECT_EQ(encode_png("", grey, {{"Title", "x"}}, {.is_srgb = true}).find(chunk), 8u + 25u);
+    EXPECT_EQ(encode_png("", grey, {{"Title", "x"}}, {.display = kSrgbDisplay}).find(chunk), 8u + 25u);
+}
+
+TEST(Png, CarriesTheEncodingOfItsDisplay) {
+    using Curve = ColorEncoding::Curve;
+    const Chromaticities rec2020 = *color_space_primaries("rec2020"), p3 = *color_space_primaries("p3d65");
+    const test::TemporaryFolder folder;
+    struct Written {
+        ColorEncoding encoding;
+        std::string cicp;
+        bool has_gamma;
+    };
+    for (const auto& [encoding, cicp, has_gamma] :
+         {Written{{rec2020, Curve::pq, 1}, {9, 16, 0, 1}, false},
+          Written{{rec2020, Curve::hlg, 1}, {9, 18, 0, 1}, false},
+          Written{{kRec709, Curve::gamma, 2.4}, {1, 1, 0, 1}, true},
+          Written{{p3, Curve::srgb, 1}, {12, 13, 0, 1}, true}, Written{{p3, Curve::gamma, 2.6}, "", true}}) {
+        const std::string file = encode_png("", Image(2, 2, 3), {}, {.display = encoding});
+        test::write_text(folder / "a.png", file);
+        EXPECT_EQ(file.find("cICP") != std::string::npos, !cicp.empty());
+        if (!cicp.empty()) EXPECT_NE(file.find("cICP" + cicp), std::string::npos);
+        EXPECT_EQ(file.find("gAMA") != std::string::npos, has_gamma);
+        EXPECT_NE(file.find("cHRM"), std::string::npos);
+        const PngColor color = read_png_color(folder / "a.png").value();
+        EXPECT_EQ(color.encoding->primaries, encoding.primaries) << cicp;
+        EXPECT_EQ(color.encoding->curve, encoding.curve);
+        EXPECT_NEAR(color.encoding->gamma, encoding.gamma, 1e-3);
+    }
+    EXPECT_FALSE(color_of({{"cICP", {9, 16, 0, 0}}}).encoding) << "of a part of the range";
+    EXPECT_FALSE(color_of({{"iCCP", iccp(icc_profile(power(1)))}}).encoding);
 }
 
 }  // namespace

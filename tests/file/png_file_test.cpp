@@ -19,6 +19,20 @@ namespace fs = std::filesystem;
 using test::png_number;
 using test::TemporaryFolder;
 
+TEST(Png, KeepsSamplesOf16Bits) {
+    const TemporaryFolder folder;
+    for (const int channels : {1, 3, 4}) {
+        Image image(37, 21, channels);
+        for (std::size_t i = 0; i < image.floats().size(); ++i)
+            image.floats()[i] = float((i * 2654435761u) % 65536) / 65535;
+        write_png(folder / "a.png", image, {}, {.bits = 16});
+        PngColor color;
+        const Image read = read_png(folder / "a.png", &color);
+        EXPECT_EQ(color.bits, 16);
+        EXPECT_TRUE(std::ranges::equal(read.floats(), image.floats())) << channels;
+    }
+}
+
 TEST(PngFile, KeepsEveryByteForOneThreeAndFourChannels) {
     const TemporaryFolder folder;
     for (const int channels : {1, 3, 4}) {

@@ -178,6 +178,7 @@ TEST_F(Fingerprints, ChangeWithTheRendererTheCaptureItsProfileAndTheOptionsOfOut
     expect_changes_all("output options", [&] { outputs_.roles = {"color", "depth"}; });
     expect_changes_all("output options", [&] { outputs_.color_type = PixelType::float32; });
     expect_changes_all("output options", [&] { outputs_.crop_to_display = true; });
+    expect_changes_all("output options", [&] { outputs_.png_bits = 16; });
     expect_changes_all("output options", [&] { outputs_.keep_channels = true; });
     expect_changes_all("output options", [&] { outputs_.compression = "dwaa"; });
     expect_changes_all("output options", [&] { run_.scale_divisor = 2; });

@@ -7,7 +7,9 @@
 #include <sstream>
 
 #include "framework/base/error.h"
+#include "framework/file/exr_file.h"
 #include "framework/file/png_file.h"
+#include "framework/file/stored_colors.h"
 #include "tests/synthetic_capture.h"
 #include "tests/temporary_folder.h"
 
@@ -155,6 +157,31 @@ TEST_F(Write, PrefersDisplayToColorForPictures) {
     const Image picture = read_png(folder_ / "display.png");
     EXPECT_EQ(picture.channels(), 3);
     EXPECT_EQ(picture.at(3, 2, 1), 1) << "display is not encoded a second time";
+}
+
+TEST_F(Write, GivesPngTheEncodingOfTheDisplayAndPqAndHlg16Bits) {
+    result_.images["display"] = Image(6, 4, 4);
+    result_.display_encoding = {*color_space_primaries("rec2020"), ColorEncoding::Curve::pq, 1};
+    write({"out.png"});
+    const PngColor color = read_png_color(folder_ / "out.png").value();
+    EXPECT_EQ(color.encoding, result_.display_encoding);
+    EXPECT_EQ(color.bits, 16);
+    result_.display_encoding = kSrgbDisplay;
+    write({"out.png"});
+    EXPECT_EQ(read_png_color(folder_ / "out.png")->bits, 8);
+}
+
+TEST_F(Write, NamesTheSpaceThatAStepConvertedColorTo) {
+    const auto attributes = [&] {
+        write({"out.exr"});
+        return ExrFile(folder_ / "out.exr").parts().at(0).metadata;
+    };
+    result_.color_encoding = {*color_space_primaries("acescg"), ColorEncoding::Curve::linear, 1};
+    EXPECT_EQ(stored_colors(attributes(), attributes()).meaning(), "acescg");
+    EXPECT_EQ(stored_primaries(attributes()), result_.color_encoding->primaries);
+    result_.color_encoding = {kRec709, ColorEncoding::Curve::unknown, 1};
+    EXPECT_EQ(attributes().text("colorInteropID"), "unknown");
+    EXPECT_FALSE(attributes().value("chromaticities"));
 }
 
 TEST_F(Write, DividesAlphaOutBeforeItEncodes) {

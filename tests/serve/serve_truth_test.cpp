@@ -9,15 +9,16 @@
 #include "framework/file/png_file.h"
 #include "framework/image/srgb.h"
 #include "tests/serve/serve_fixture.h"
+#include "tests/wide_capture.h"
 
 namespace aftershade::test {
 namespace {
 
-void write_truth(const std::filesystem::path& path, int width = 64) {
+void write_truth(const std::filesystem::path& path, int width = 64, const std::string& space = "rec709") {
     SyntheticScene scene{
         .width = width, .height = 36, .background = {0.12f, 0.2f, 0.35f}, .background_depth_m = 8};
     scene.box = SyntheticBox{5, 6, 16, 12, 5, 2};
-    write_capture(make_capture(scene, 1), path);
+    write_capture(in_space(make_capture(scene, 1), space), path);
 }
 
 Image rgb_in(const std::filesystem::path& path) {
@@ -47,6 +48,16 @@ TEST_F(Serve, MeasuresTheColourOfItsStepsAgainstTheTruthBesideTheFrame) {
         if (layer["layer"] == "RGB") flip = layer["ldr_flip"]["mean"];
     EXPECT_NEAR(metrics["flip"].get<double>(), flip, 1e-6);
     EXPECT_TRUE(get("/api/picture?frame=1&view=truth:lens%2Bshutter").body.starts_with("\x89PNG"));
+}
+
+TEST_F(Serve, MeasuresATruthInOtherPrimariesByItsLight) {
+    start();
+    write_truth(folder_ / "truth_lens_0001.exr");
+    write_truth(folder_ / "truth_shutter_0001.exr", 64, "acescg");
+    const Json expected = get("/api/metrics?frame=1&truth=lens").json();
+    const Json metrics = get("/api/metrics?frame=1&truth=shutter").json();
+    EXPECT_NEAR(metrics["psnr_db"].get<double>(), expected["psnr_db"].get<double>(), 1e-3);
+    EXPECT_NEAR(metrics["flip"].get<double>(), expected["flip"].get<double>(), 1e-5);
 }
 
 TEST_F(Serve, ShowsHowFarEachPixelIsFromTheTruthAsBrightAsTheExposureMakesIt) {

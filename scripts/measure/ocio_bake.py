@@ -1,0 +1,167 @@
+"""Bakes views of a newer OpenColorIO's config into a config that OpenColorIO 2.1 reads, with a LUT for each view."""
+import argparse
+import pathlib
+import sys
+from collections.abc import Sequence
+
+import numpy
+import PyOpenColorIO as ocio
+
+from measure.measures import Array
+
+POINTS = 65
+LOG_POINTS = 8192
+# What a shaper holds: stops above 1 at its end, and the light that its logarithm adds.
+TOP_STOPS, TOE = 8.0, 2e-3
+# Share of the logarithm beside the view's own curve of greys, which alone would leave bright colours too few points.
+LOG_SHARE = 0.45
+# Displays as OpenColorIO 2.1 has them, so that the program finds the encoding for PNG.
+DISPLAYS = ["sRGB", "REC.1886-REC.709", "G2.2-REC.709", "G2.6-P3-D65", "DisplayP3", "REC.2100-PQ", "ST2084-P3-D65",
+            "REC.2100-HLG-1000nit"]
+# Linear Rec. 709, by BabelColor's averages of the ColorChecker of 2012.
+PATCHES = [(.17, .08, .06), (.54, .30, .22), (.12, .19, .34), (.10, .15, .05), (.23, .22, .44), (.13, .50, .40), (.67, .20, .03),
+           (.08, .11, .39), (.53, .09, .13), (.11, .05, .15), (.34, .50, .05), (.76, .36, .03), (.03, .05, .29), (.06, .30, .07),
+           (.42, .04, .04), (.84, .57, .01), (.49, .09, .30), (.01, .24, .38), (.88, .88, .86), (.58, .59, .58), (.36, .36, .36),
+           (.19, .19, .19), (.09, .09, .09), (.03, .03, .03)]
+
+
+def applied(processor: ocio.Processor, colors: Array) -> Array:
+    values = numpy.ascontiguousarray(colors, dtype=numpy.float32).reshape(-1, 3).copy()
+    processor.getDefaultCPUProcessor().applyRGB(values)
+    return values
+
+
+def light_from_log(shares: Array) -> Array:
+    low, high = numpy.log2(TOE), numpy.log2(2.0 ** TOP_STOPS + TOE)
+    return 2.0 ** (low + shares * (high - low)) - TOE
+
+
+def test_colors() -> Array:
+    """A chart from -6 to 6 stops, and ramps of greys over 24 stops; linear Rec. 709."""
+    chart = [numpy.asarray(PATCHES) * 2.0 ** stops for stops in numpy.arange(-6, 6.5, 0.5)]
+    return numpy.concatenate([*chart, numpy.repeat(2.0 ** numpy.linspace(-16, 8, 2000)[:, None], 3, 1)])
+
+
+def log_transform() -> ocio.LogAffineTransform:
+    low, high = numpy.log2(TOE), numpy.log2(2.0 ** TOP_STOPS + TOE)
+    return ocio.LogAffineTransform(logSideSlope=[1 / (high - low)] * 3, logSideOffset=[-low / (high - low)] * 3,
+                                   linSideSlope=[1.0] * 3, linSideOffset=[TOE] * 3)
+
+
+def floor_transform() -> ocio.RangeTransform:
+    """A logarithm has no value for light below 0."""
+    return ocio.RangeTransform(minInValue=0.0, minOutValue=0.0)
+
+
+class Baker:
+    def __init__(self, path: str, folder: pathlib.Path) -> None:
+        self.source = ocio.Config.CreateFromFile(path)
+        self.folder = folder
+        self.baked = ocio.Config()
+        self.baked.setVersion(2, 1)
+        self.baked.setSearchPath("luts")
+        self.baked.addColorSpace(ocio.ColorSpace(name="ACES2065-1"))
+        self.baked.addColorSpace(ocio.ColorSpace(ocio.REFERENCE_SPACE_DISPLAY, "CIE XYZ-D65"))
+        for role, space in (("default", "ACES2065-1"), ("aces_interchange", "ACES2065-1"), ("cie_xyz_d65_interchange", "CIE XYZ-D65")):
+            self.baked.setRole(role, space)
+        self.ap0_from_709 = self.source.getProcessor("Linear Rec.709 (sRGB)", "ACES2065-1")
+        self.views = 0
+
+    def view(self, display: str, view: str) -> ocio.Processor:
+        return self.source.getProcessor(ocio.DisplayViewTransform(src="ACES2065-1", display=display, view=view))
+
+    def style_of(self, display: str) -> str:
+        """The transform of OpenColorIO 2.1 that makes the display's numbers of CIE XYZ; "" where it has none."""
+        greys = numpy.linspace(0.02, 1, 50)[:, None] * numpy.array([[1, 1, 1], [1, .6, .5], [.5, 1, .6], [.5, .6, 1]])[:, None]
+        space = self.source.getDisplayViewColorSpaceName(display, self.source.getDefaultView(display))
+        space = display if space == "<USE_DISPLAY_NAME>" else space
+        for name in DISPLAYS:
+            style = f"DISPLAY - CIE-XYZ-D65_to_{name}"
+            back = self.source.getProcessor(ocio.BuiltinTransform(style=style), ocio.TRANSFORM_DIR_INVERSE)
+            expected = applied(self.source.getProcessor(space, "cie_xyz_d65_interchange"), greys)
+            if numpy.allclose(applied(back, greys), expected, rtol=1e-3, atol=1e-4):
+                return style
+        return ""
+
+    def shaped_view(self, view: ocio.Processor, to_p3: ocio.MatrixTransform) -> ocio.GroupTransform:
+        """From ACES2065-1 to the display's numbers, by a shaper and a cube, whose files it writes."""
+        shares = numpy.linspace(0, 1, LOG_POINTS)
+        from_p3 = self.source.getProcessor(to_p3, ocio.TRANSFORM_DIR_INVERSE)
+        light = light_from_log(shares)
+        grey = numpy.maximum.accumulate(applied(view, applied(from_p3, numpy.repeat(light[:, None], 3, 1)))[:, 1])
+        curve = (1 - LOG_SHARE) * (grey - grey[0]) / (grey[-1] - grey[0]) + LOG_SHARE * shares
+        axis = light_from_log(numpy.interp(numpy.linspace(0, 1, POINTS), curve, shares))
+        # OpenColorIO's cubes run through blue first.
+        corners = numpy.stack(numpy.meshgrid(axis, axis, axis, indexing="ij"), -1)
+        cube = applied(view, applied(from_p3, corners))
+        self.views += 1
+        shaper_name, cube_name = f"shaper_{self.views}.spi1d", f"view_{self.views}.spi3d"
+        lines = "\n".join(f"{value:.8g}" for value in curve)
+        (self.folder / "luts" / shaper_name).write_text(
+            f"Version 1\nFrom 0 1\nLength {LOG_POINTS}\nComponents 1\n{{\n{lines}\n}}\n")
+        index = numpy.stack(numpy.meshgrid(*[numpy.arange(POINTS)] * 3, indexing="ij"), -1).reshape(-1, 3)
+        rows = "\n".join(f"{r} {g} {b} {x:.7g} {y:.7g} {z:.7g}" for (r, g, b), (x, y, z) in zip(index, cube, strict=True))
+        (self.folder / "luts" / cube_name).write_text(f"SPILUT 1.0\n3 3\n{POINTS} {POINTS} {POINTS}\n{rows}\n")
+        return ocio.GroupTransform([to_p3, floor_transform(), log_transform(),
+                                    ocio.FileTransform(src=shaper_name, interpolation=ocio.INTERP_LINEAR),
+                                    ocio.FileTransform(src=cube_name, interpolation=ocio.INTERP_TETRAHEDRAL)])
+
+    def add(self, display: str, view: str) -> None:
+        processor = self.view(display, view)
+        matrix = applied(self.source.getProcessor("ACES2065-1", "Linear P3-D65"), numpy.eye(3)).T
+        rows = numpy.eye(4)
+        rows[:3, :3] = matrix
+        whole = self.shaped_view(processor, ocio.MatrixTransform(matrix=rows.reshape(-1).tolist()))
+        style = self.style_of(display)
+        if style:
+            whole.appendTransform(ocio.BuiltinTransform(style=style, direction=ocio.TRANSFORM_DIR_INVERSE))
+            self.baked.addViewTransform(ocio.ViewTransform(
+                referenceSpace=ocio.REFERENCE_SPACE_SCENE, name=f"{display}, {view}", fromReference=whole))
+            if display not in self.baked.getColorSpaceNames(ocio.SEARCH_REFERENCE_SPACE_DISPLAY, ocio.COLORSPACE_ALL):
+                self.baked.addColorSpace(ocio.ColorSpace(
+                    ocio.REFERENCE_SPACE_DISPLAY, display, fromReference=ocio.BuiltinTransform(style=style)))
+            self.baked.addDisplayView(display, view, f"{display}, {view}", display, "", "", "")
+        else:
+            self.baked.addColorSpace(ocio.ColorSpace(name=f"{display}, {view}", fromReference=whole))
+            self.baked.addDisplayView(display, view, f"{display}, {view}")
+
+    def write(self) -> pathlib.Path:
+        path = self.folder / "config.ocio"
+        path.write_text(self.baked.serialize())
+        return path
+
+    def errors(self, path: pathlib.Path, display: str, view: str) -> Array:
+        """Of each colour of the chart and the ramp, in 1/1023."""
+        colors = applied(self.ap0_from_709, test_colors())
+        baked = ocio.Config.CreateFromFile(str(path)).getProcessor(
+            ocio.DisplayViewTransform(src="ACES2065-1", display=display, view=view))
+        apart = numpy.clip(applied(baked, colors), 0, 1) - numpy.clip(applied(self.view(display, view), colors), 0, 1)
+        return numpy.abs(apart).max(axis=1) * 1023
+
+
+def main(words: Sequence[str]) -> None:
+    parser = argparse.ArgumentParser(prog="scripts/make ocio-bake")
+    parser.add_argument("config", help="a path, or an address such as ocio://default")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--display", help="one display (default: all)")
+    parser.add_argument("--view", help="one view (default: all)")
+    options = parser.parse_args(words)
+    (options.folder / "luts").mkdir(parents=True, exist_ok=True)
+    baker = Baker(options.config, options.folder)
+    chosen = [(display, view) for display in baker.source.getDisplays() for view in baker.source.getViews(display)
+              if options.display in (None, display) and options.view in (None, view)]
+    chosen = [(display, view) for display, view in chosen if not baker.source.getColorSpace(
+        baker.source.getDisplayViewColorSpaceName(display, view).replace("<USE_DISPLAY_NAME>", display)).isData()]
+    if not chosen:
+        sys.exit(f"{options.config} has no such display and view; its displays: {', '.join(baker.source.getDisplays())}")
+    for display, view in chosen:
+        baker.add(display, view)
+    path = baker.write()
+    for display, view in chosen:
+        errors = baker.errors(path, display, view)
+        print(f"{display}, {view}: at most {errors.max():.2f}/1023, 99 % within {numpy.percentile(errors, 99):.2f}/1023")
+    print(path)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
