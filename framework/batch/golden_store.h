@@ -39,7 +39,7 @@ public:
     std::map<std::string, std::string> fetch(const std::set<std::string>& digests,
                                              const std::filesystem::path& folder,
                                              const std::atomic<bool>& interrupt) const;
-    /// Those that the store does not have, or that it cannot be asked about. Does not fetch them.
+    /// Those that the store lacks, or that cannot be looked up there. Does not fetch them.
     std::set<std::string> lacking(const std::set<std::string>& digests,
                                   const std::atomic<bool>& interrupt) const;
     /// From `folder`, and fetches them again to see that they are there. Throws Error(ErrorKind::output) with
