@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +16,8 @@
 #include "cli/interrupt.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/text.h"
-#include "framework/batch/git_lines.h"
 #include "framework/batch/golden_apply.h"
+#include "framework/batch/golden_commits.h"
 #include "framework/document/document.h"
 
 namespace aftershade::cli {
@@ -28,44 +28,49 @@ namespace fs = std::filesystem;
 
 struct ApplyArguments {
     GoldenOptions golden;
-    std::string file, commits, author, approvers;
+    std::string file;
+    std::optional<std::string> commits, author, approvers;
 };
 
-/// Those of the commits' messages, oldest first. Before each message stands a line of its author, which
-/// begins with a NUL: no line of a message has one.
-std::vector<GoldenDecision> decisions_of_commits(const fs::path& folder, const std::string& commits) {
-    const std::vector<std::string> log =
-        lines_of_git(folder, {"log", "--no-show-signature", "--reverse", "--no-walk=unsorted",
-                              "--format=%x00%an <%ae>%n%B", "--end-of-options", commits, "--"});
-    if (log.empty())
-        throw CodedError(kCompareUsage, "--commits " + commits + ": `git log` in " + folder.string() +
+/// Prints why tags of some commits do not count.
+std::vector<GoldenDecision> decisions_of_revisions(const fs::path& folder, const std::string& revisions) {
+    const std::vector<TaggedCommit> commits = commits_of_git(folder, revisions);
+    if (commits.empty())
+        throw CodedError(kCompareUsage, "--commits " + revisions + ": `git log` in " + folder.string() +
                                             " gives no commit; name one, or a range such as main..HEAD");
-    std::vector<GoldenDecision> decisions;
-    for (auto line = log.begin(); line != log.end();) {
-        const std::string author = line->substr(1);
-        std::string message;
-        for (++line; line != log.end() && !line->starts_with('\0'); ++line) message += *line + '\n';
-        std::ranges::move(decisions_of_message(message, author), std::back_inserter(decisions));
-    }
+    std::vector<std::string> notes;
+    std::vector<GoldenDecision> decisions = decisions_of_commits(commits, notes);
+    for (const std::string& note : notes) std::cerr << "note: " << note << "\n";
     return decisions;
 }
 
 std::vector<GoldenDecision> read_decisions(const ApplyArguments& arguments, const fs::path& folder,
                                            Diagnostics& diagnostics) {
-    if (arguments.file.empty() == arguments.commits.empty())
+    if (arguments.file.empty() == !arguments.commits)
         throw CodedError(kCompareUsage,
                          "golden apply-approvals takes either a FILE of decisions or --commits");
     std::vector<GoldenDecision> decisions =
-        arguments.file.empty()
-            ? decisions_of_commits(folder, arguments.commits)
+        arguments.commits
+            ? decisions_of_revisions(folder, *arguments.commits)
             : parse_decisions(read_text_file(arguments.file, ErrorKind::capture, kMaxDocumentBytes),
                               arguments.file, diagnostics);
-    if (!arguments.author.empty())
-        for (GoldenDecision& decision : decisions) decision.by = arguments.author;
+    if (arguments.author)
+        for (GoldenDecision& decision : decisions) decision.by = *arguments.author;
     return decisions;
 }
 
+/// "" is what a variable of CI gives that is not set: the file's word and the suite's list must not count
+/// then.
+void refuse_empty(const std::optional<std::string>& value, const std::string& option,
+                  const std::string& remedy) {
+    if (value && trimmed(*value).empty())
+        throw CodedError(kCompareUsage, option + ": is empty; " + remedy + ", or leave the option out");
+}
+
 ExitCode apply(const ApplyArguments& arguments) {
+    refuse_empty(arguments.commits, "--commits", "name commits, such as HEAD or main..HEAD");
+    refuse_empty(arguments.author, "--author", "name who decided: 'Ada <ada@example.org>'");
+    refuse_empty(arguments.approvers, "--approvers", "name the file of who may approve");
     const std::atomic<bool>& stop = watch_for_interrupt();
     GoldenSetup setup = prepare_golden(arguments.golden);
     setup.context.suite = &setup.suite;
@@ -74,7 +79,7 @@ ExitCode apply(const ApplyArguments& arguments) {
     GoldenApplyOptions options;
     options.any_renderer = arguments.golden.any_renderer;
     options.approvers = read_approvers(
-        arguments.approvers.empty() ? folder / "approvers.json" : fs::path(arguments.approvers), diagnostics);
+        arguments.approvers ? fs::path(*arguments.approvers) : folder / "approvers.json", diagnostics);
     const std::vector<GoldenDecision> decisions = resolve_decisions(
         setup.suite, read_decisions(arguments, folder, diagnostics), options.approvers, diagnostics);
     if (diagnostics.has_errors()) throw CodedError(kCompareUsage, diagnostics);

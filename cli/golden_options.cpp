@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -111,7 +112,11 @@ GoldenSetup prepare_golden(const GoldenOptions& options) {
          {std::pair{"--backend", options.gl.backend}, {"--device", options.gl.device}})
         if (!value.empty()) same.insert(same.end(), {name, value});
     setup.context.with_options = same.empty() ? "" : " " + printed_command(same);
-    run.unfetched = fetch_goldens(setup.suite, options.filters, run.render.timeout, watch_for_interrupt());
+    FetchedGoldens fetched =
+        fetch_goldens(setup.suite, options.filters, run.render.timeout, watch_for_interrupt());
+    run.unfetched = std::move(fetched.unfetched);
+    if (!fetched.cache_fault.empty())
+        std::cerr << "aftershade: warning: " << printable(fetched.cache_fault) << "\n";
     setup.context.commit = line_of_git(setup.suite.folder(), {"rev-parse", "HEAD"});
     return setup;
 }

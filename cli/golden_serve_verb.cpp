@@ -89,12 +89,17 @@ fs::path approvers_of(const fs::path& suite_folder) {
     return suite_folder / "approvers.json";
 }
 
+/// A link that leads nowhere is a list that cannot be read, not an absent one.
+bool has_approvers(const fs::path& suite_folder) {
+    return fs::exists(fs::symlink_status(approvers_of(suite_folder)));
+}
+
 /// Where a list says who may approve, with the address that it goes by.
 std::string reviewer_of(const GoldenOptions& options) {
     const fs::path folder =
         fs::is_directory(options.suite) ? fs::path(options.suite) : fs::absolute(options.suite).parent_path();
     const std::string name = approver_of(options, folder);
-    if (!options.approver.empty() || !fs::exists(approvers_of(folder))) return name;
+    if (!options.approver.empty() || !has_approvers(folder)) return name;
     const std::string address = line_of_git(folder, {"config", "user.email"});
     return address.empty() ? name : name + " <" + address + ">";
 }
@@ -104,10 +109,10 @@ GoldenApplied write_approved(const GoldenOptions& options, const std::vector<Gol
     GoldenOptions drawing = options;
     drawing.report.clear();
     const GoldenSetup setup = prepare_golden(drawing);
-    const fs::path approvers = approvers_of(setup.suite.folder());
     Diagnostics diagnostics;
     GoldenApplyOptions apply;
-    if (fs::exists(approvers)) apply.approvers = read_approvers(approvers, diagnostics);
+    if (has_approvers(setup.suite.folder()))
+        apply.approvers = read_approvers(approvers_of(setup.suite.folder()), diagnostics);
     const auto resolved = resolve_decisions(setup.suite, decisions, apply.approvers, diagnostics);
     if (diagnostics.has_errors()) throw CodedError(kCompareUsage, diagnostics);
     apply.any_renderer = options.any_renderer;

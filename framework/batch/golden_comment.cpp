@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
@@ -20,6 +23,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr std::size_t kMostTextBytes = 300;       // of one cell
+constexpr std::size_t kMostCommandBytes = 8000;   // of one command
 constexpr std::size_t kMostCommentBytes = 60000;  // GitHub takes 65,536 characters
 constexpr std::size_t kMostThumbnailRows = 8;
 
@@ -27,9 +31,17 @@ std::string text_of(const Json& value) {
     return value.is_string() ? value.get<std::string>() : "";
 }
 
+/// Without the rest of a long text; no character is cut.
+std::string shortened(std::string text) {
+    if (text.size() <= kMostTextBytes) return text;
+    std::size_t end = kMostTextBytes;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+    return text.substr(0, end) + "…";
+}
+
 /// Text of a stranger as code: Markdown, HTML and mentions in it stay text, and a table keeps its cells.
 std::string code(const std::string& text) {
-    std::string plain = printable(text.substr(0, kMostTextBytes));
+    std::string plain = shortened(printable(text));
     std::ranges::replace(plain, '`', '\'');
     for (std::size_t at = 0; (at = plain.find('|', at)) != plain.npos; at += 2) plain.insert(at, "\\");
     return plain.empty() ? "" : "`" + plain + "`";
@@ -67,7 +79,19 @@ std::vector<const Json*> bad_cases(const Json& report) {
     return cases;
 }
 
-/// The largest difference of an image's layers: "0.4375 at (176, 31) R".
+/// A figure of a report, which has words for those that JSON lacks.
+double figure_of(const Json& value) {
+    const std::string word = text_of(value);
+    if (word == "inf" || word == "-inf" || word == "nan") return std::strtod(word.c_str(), nullptr);
+    return value.is_number() ? value.get<double>() : 0;
+}
+
+std::int64_t whole_of(const Json& value) {
+    constexpr std::int64_t kMost = 1'000'000'000;  // a stranger's report may hold any
+    return value.is_number_integer() ? std::clamp(value.get<std::int64_t>(), -kMost, kMost) : 0;
+}
+
+/// The largest difference of an image's layers: "0.4375 at (176, 31) R". No number is larger than NaN.
 std::string worst_of(const Json& image) {
     const Json& comparison = image.at("comparison");
     if (!comparison.is_object()) return "";
@@ -75,11 +99,12 @@ std::string worst_of(const Json& image) {
     double most = 0;
     for (const Json& layer : comparison.at("layers")) {
         const Json& error = layer.at("max_error");
-        if (!error.is_object() || !error.at("value").is_number() || error.at("value").get<double>() <= most)
-            continue;
-        most = error.at("value").get<double>();
-        text = fmt::format("{:.4g} at ({}, {}) {}", most, error.at("x").get<int>(), error.at("y").get<int>(),
-                           text_of(error.at("channel")));
+        if (!error.is_object()) continue;
+        const double value = figure_of(error.at("value"));
+        if (std::isnan(most) || (!std::isnan(value) && value <= most)) continue;
+        most = value;
+        text = fmt::format("{} at ({}, {}) {}", std::isnan(most) ? "NaN" : fmt::format("{:.4g}", most),
+                           whole_of(error.at("x")), whole_of(error.at("y")), text_of(error.at("channel")));
     }
     return text;
 }
@@ -91,8 +116,8 @@ std::string share_of(const Json& image) {
     if (comparison.is_object())
         for (const Json& layer : comparison.at("layers"))
             for (const char* kind : {"failing", "warning"})
-                most = std::max(most, layer.at(kind).at("percent").get<double>());
-    return most > 0 ? fmt::format("{:.3g} %", most) : "";
+                most = std::max(most, figure_of(layer.at(kind).at("percent")));
+    return std::isfinite(most) && most > 0 ? fmt::format("{:.3g} %", most) : "";
 }
 
 /// What changed since the approval; for a case without images the first error.
@@ -124,11 +149,18 @@ std::vector<Row> rows_of(const std::vector<const Json*>& cases) {
     return rows;
 }
 
+/// A verdict is words of ours, unless a stranger wrote another.
+std::string verdict_of(const Json& thing) {
+    const std::string text = text_of(thing.at("verdict"));
+    const auto fits = [](char c) { return (c >= 'a' && c <= 'z') || c == ' '; };
+    return std::ranges::all_of(text, fits) ? shortened(text) : code(text);
+}
+
 std::string table_row(const Row& row) {
     const std::string name = text_of(row.test->at("name"));
     return fmt::format("| {} | {} | {} | {} | {} | {} |\n", code(name),
                        row.image ? code(text_of(row.image->at("name"))) : "",
-                       text_of((row.image ? *row.image : *row.test).at("verdict")),
+                       verdict_of(row.image ? *row.image : *row.test),
                        row.image ? code(worst_of(*row.image)) : "", row.image ? share_of(*row.image) : "",
                        code(cause_of(*row.test, row.image)));
 }
@@ -137,8 +169,8 @@ std::string headline(const Json& report) {
     if (const auto error = report.find("error"); error != report.end())
         return "### Golden images: the run ended early\n\n" + code(text_of(*error)) + "\n";
     const Json& counts = report.at("counts");
-    const auto number = [&](const char* key) { return counts.at(key).get<int>(); };
-    const int failed = number("failed") + number("orphans");
+    const auto number = [&](const char* key) { return whole_of(counts.at(key)); };
+    const std::int64_t failed = number("failed") + number("orphans");
     if (failed + number("warned") == 0)
         return fmt::format("### Golden images: {} as approved\n",
                            counted(std::size_t(number("passed")), "case"));
@@ -166,36 +198,62 @@ std::string thumbnails(const fs::path& report, const std::vector<Row>& rows,
                        options.pictures_url, ThumbnailSheet::kName);
 }
 
+std::string commands_of(const Json& data) {
+    std::string text;
+    for (const auto& [key, what] :
+         {std::pair{"approve", "approve"}, {"approve_machine", "keep this machine's images too"}}) {
+        const auto command = data.find(key);
+        if (command == data.end() || !command->is_string()) continue;
+        const std::string words = command->get<std::string>();
+        text += words.size() > kMostCommandBytes
+                    ? fmt::format("\nThe command to {} is in the report.\n", what)
+                    : fmt::format("\nTo {}:\n\n{}\n", what, block(words));
+    }
+    return text;
+}
+
+std::string machine_of(const Json& data) {
+    const auto environment = data.find("environment");
+    if (environment == data.end()) return "";
+    std::vector<std::string> words;
+    for (const char* key : {"renderer", "version", "commit"})
+        if (const std::string word = text_of(environment->at(key)); !word.empty()) words.push_back(word);
+    return "\n" + code(joined(words, ", ", ", "));
+}
+
+/// As many of the lines as fit, in whole.
+std::size_t append_lines(const std::vector<std::string>& lines, std::size_t most_bytes, std::string& text) {
+    std::size_t count = 0;
+    for (; count < lines.size() && text.size() + lines[count].size() <= most_bytes; ++count)
+        text += lines[count];
+    return count;
+}
+
 std::string markdown_of(const fs::path& report, const Json& data, const GoldenCommentOptions& options) {
     const std::vector<Row> rows = rows_of(bad_cases(data));
     std::string text = fmt::format("<!-- aftershade golden: {} -->\n{}",
-                                   xml_text(printable(text_of(data.at("suite")))), headline(data));
+                                   xml_text(shortened(printable(text_of(data.at("suite"))))), headline(data));
+    std::string end = thumbnails(report, rows, options) + commands_of(data) + machine_of(data);
+    if (!options.report_url.empty()) end += fmt::format(" · [report]({})", options.report_url);
+    constexpr std::size_t kRemarkBytes = 200;  // that something is left out
+    const std::size_t most = kMostCommentBytes - std::min(kMostCommentBytes, end.size() + kRemarkBytes);
     if (!rows.empty()) {
         text +=
             "\n| case | image | verdict | largest difference | pixels beyond the limit | cause "
             "|\n|---|---|---|---|---|---|\n";
-        for (std::size_t i = 0; i < std::min(rows.size(), options.rows); ++i) text += table_row(rows[i]);
-        if (rows.size() > options.rows)
-            text += fmt::format("\n{} more are in the report.\n", rows.size() - options.rows);
+        std::vector<std::string> lines;
+        for (std::size_t i = 0; i < std::min(rows.size(), options.rows); ++i)
+            lines.push_back(table_row(rows[i]));
+        const std::size_t shown = append_lines(lines, most, text);
+        if (rows.size() > shown) text += fmt::format("\n{} more in the report.\n", rows.size() - shown);
     }
+    std::vector<std::string> orphans;
     for (const Json& orphan : data.at("orphans"))
-        text += fmt::format("\n{}: no case gives this golden.\n", code(text_of(orphan)));
-    text += thumbnails(report, rows, options);
-    for (const char* key : {"approve", "approve_machine"})
-        if (const auto command = data.find(key); command != data.end() && command->is_string())
-            text += fmt::format("\nTo {}:\n\n{}\n",
-                                std::string(key) == "approve" ? "approve" : "keep this machine's images too",
-                                block(command->get<std::string>()));
-    if (const auto environment = data.find("environment"); environment != data.end()) {
-        std::vector<std::string> words;
-        for (const char* key : {"renderer", "version", "commit"})
-            if (const std::string word = text_of(environment->at(key)); !word.empty()) words.push_back(word);
-        text += "\n" + code(joined(words, ", ", ", "));
-    }
-    if (!options.report_url.empty()) text += fmt::format(" · [report]({})", options.report_url);
-    if (text.size() > kMostCommentBytes)
-        text = text.substr(0, kMostCommentBytes) + "\n\nThe rest is in the report.";
-    return text + "\n";
+        orphans.push_back(fmt::format("\n{}: no case gives this golden.\n", code(text_of(orphan))));
+    const std::size_t shown = append_lines(orphans, most, text);
+    if (orphans.size() > shown)
+        text += fmt::format("\nMore goldens without a case, in the report: {}.\n", orphans.size() - shown);
+    return text + end + "\n";
 }
 
 /// As GitHub's workflow commands escape it.

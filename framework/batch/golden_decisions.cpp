@@ -154,10 +154,22 @@ GoldenApprovers read_approvers(const std::filesystem::path& file, Diagnostics& d
         for (const Node& one : list->items) {
             ObjectReader entry(one, "the entry", diagnostics);
             GoldenApprovers::Entry result{entry.texts("cases"), entry.texts("who")};
-            if (result.cases.empty()) result.cases = {"*"};
+            const auto is_empty = [](const std::string& text) { return text.empty(); };
+            if (result.who.empty() || std::ranges::any_of(result.who, is_empty))
+                diagnostics.error(one.place,
+                                  "'who' has no address; list addresses: \"who\": [\"ada@example.org\"]");
+            // A list that was emptied is not one that was left out.
+            if (!one.find("cases")) result.cases = {"*"};
+            else if (result.cases.empty())
+                diagnostics.error(one.place,
+                                  "'cases' is empty; list globs of cases, or leave it out for all cases");
             entry.finish();
             approvers.entries.push_back(std::move(result));
         }
+    if (approvers.entries.empty() && !diagnostics.has_errors())
+        diagnostics.error(node->place,
+                          "'approvers' is empty, so no one may approve; write \"approvers\": "
+                          "[{\"who\": [\"ada@example.org\"]}]");
     reader.finish();
     return approvers;
 }

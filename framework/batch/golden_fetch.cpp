@@ -7,10 +7,9 @@
 #include "framework/base/error.h"
 #include "framework/base/scratch_folder.h"
 #include "framework/base/side_file.h"
-#include "framework/base/text.h"
 #include "framework/batch/approved_image.h"
+#include "framework/batch/golden_cache.h"
 #include "framework/batch/golden_store.h"
-#include "framework/effect/program_store.h"
 
 namespace aftershade {
 
@@ -45,56 +44,54 @@ void add_wanted(const GoldenCase& test, Wanted& wanted, UnfetchedImages& unfetch
     }
 }
 
-void place(const fs::path& image, const WantedImage& wanted) {
-    const fs::path target = path_below(wanted.folder, wanted.name);
-    write_text_file(target, read_text_file(image, ErrorKind::output, kMaxStoredBytes));
+/// The bytes were verified; the file may be another by now.
+void place(const std::string& bytes, const std::string& digest, const Wanted& wanted) {
+    const auto [first, last] = wanted.equal_range(digest);
+    for (auto image = first; image != last; ++image)
+        write_text_file(path_below(image->second.folder, image->second.name), bytes);
 }
 
 /// Copies what the cache has, and takes it out of `wanted`.
-void take_from_cache(const fs::path& cache, Wanted& wanted) {
-    std::erase_if(wanted, [&](const auto& entry) {
-        const auto& [digest, image] = entry;
-        const fs::path kept = cache / stored_name(digest);
-        if (sha256_of_file(kept) != digest) return false;
-        place(kept, image);
-        return true;
-    });
+void take_from_cache(GoldenCache& cache, Wanted& wanted) {
+    for (auto image = wanted.begin(); image != wanted.end();) {
+        const std::string digest = image->first, bytes = cache.load(digest);
+        if (!bytes.empty()) place(bytes, digest, wanted);
+        const auto next = wanted.upper_bound(digest);
+        if (!bytes.empty()) wanted.erase(image, next);
+        image = next;
+    }
 }
 
 }  // namespace
 
-UnfetchedImages fetch_goldens(const GoldenSuite& suite, const std::vector<std::string>& filters,
-                              std::chrono::milliseconds timeout, const std::atomic<bool>& interrupt) {
-    UnfetchedImages unfetched;
-    if (suite.store.empty()) return unfetched;
+FetchedGoldens fetch_goldens(const GoldenSuite& suite, const std::vector<std::string>& filters,
+                             std::chrono::milliseconds timeout, const std::atomic<bool>& interrupt) {
+    FetchedGoldens result;
+    if (suite.store.empty()) return result;
     Wanted wanted;
     for (const GoldenCase& test : suite.cases)
-        if (test.skip.empty() && fits_filter(test, filters)) add_wanted(test, wanted, unfetched);
-    const fs::path programs = ProgramStore::from_environment().folder();
-    const fs::path cache = programs.empty() ? programs : programs / "goldens";
-    if (!cache.empty()) take_from_cache(cache, wanted);
+        if (test.skip.empty() && fits_filter(test, filters)) add_wanted(test, wanted, result.unfetched);
+    GoldenCache cache = GoldenCache::from_environment();
+    take_from_cache(cache, wanted);
     std::set<std::string> digests;
     for (const auto& [digest, image] : wanted) digests.insert(digest);
     const ScratchFolder scratch;
     const auto faults =
         GoldenStore(suite.store, suite.folder(), timeout).fetch(digests, scratch.path(), interrupt);
-    if (!cache.empty() && !digests.empty()) fs::create_directories(cache);
-    for (const auto& [digest, image] : wanted) {
-        const fs::path fetched = scratch.path() / stored_name(digest);
-        if (const auto fault = faults.find(digest); fault != faults.end()) {
-            const std::string sidecar = (image.folder / image.name).replace_extension(".json").string();
-            unfetched[image.test].push_back((image.folder / image.name).string() +
-                                            ": not fetched: " + fault->second +
-                                            " (if the store has lost it, put it there again, or remove " +
-                                            sidecar + " and approve a new one)");
-            continue;
-        }
-        if (!cache.empty())
-            write_text_file(path_below(cache, stored_name(digest)),
-                            read_text_file(fetched, ErrorKind::output, kMaxStoredBytes));
-        place(fetched, image);
+    for (const std::string& digest : digests) {
+        if (faults.contains(digest)) continue;
+        const std::string bytes =
+            read_text_file(scratch.path() / stored_name(digest), ErrorKind::output, kMaxStoredBytes);
+        cache.save(digest, bytes);
+        place(bytes, digest, wanted);
     }
-    return unfetched;
+    for (const auto& [digest, image] : wanted)
+        if (const auto fault = faults.find(digest); fault != faults.end())
+            result.unfetched[image.test].push_back((image.folder / image.name).string() +
+                                                   ": not fetched: " + fault->second);
+    if (!digests.empty()) cache.make_room();
+    result.cache_fault = cache.fault();
+    return result;
 }
 
 }  // namespace aftershade

@@ -14,10 +14,15 @@ namespace aftershade {
 /// What a case lacks, by its name: a sentence for each image.
 using UnfetchedImages = std::map<std::string, std::vector<std::string>>;
 
+struct FetchedGoldens {
+    UnfetchedImages unfetched;
+    std::string cache_fault;  ///< why the cache was not used, with the remedy; "" where it was
+};
+
 /// For each sidecar of the cases that names a SHA-256: the image beside it has these bytes afterwards, or is
-/// in the result. Takes it from the cache, else from the store, whose images go into the cache. Nothing is
-/// done for a suite without a store. Throws Error(ErrorKind::output) where the cache cannot be written.
-UnfetchedImages fetch_goldens(const GoldenSuite& suite, const std::vector<std::string>& filters,
-                              std::chrono::milliseconds timeout, const std::atomic<bool>& interrupt);
+/// `unfetched`. Takes it from the cache, else from the store, whose images go into the cache. Nothing is done
+/// for a suite without a store. Throws Error(ErrorKind::output) where it cannot be put there.
+FetchedGoldens fetch_goldens(const GoldenSuite& suite, const std::vector<std::string>& filters,
+                             std::chrono::milliseconds timeout, const std::atomic<bool>& interrupt);
 
 }  // namespace aftershade

@@ -223,9 +223,9 @@ const Block& golden_suite_block() {
                           R"("goldens")"),
                  optional("store",
                           text({.pattern = {kStorePattern, is_store},
-                                .fault = "'{}' is neither a folder, a URL of http or https without user, "
+                                .fault = "'store' is neither a folder, a URL of http or https without user, "
                                          "password and query, nor rclone:REMOTE:PATH with a remote of your "
-                                         "rclone.conf",
+                                         "rclone.conf (passwords belong into ~/.netrc or rclone.conf)",
                                 .type = "folder, URL or `rclone:REMOTE:PATH`"}),
                           "[Where the approved images lie](#stores); default: in the tree alone."),
                  optional("effect_paths", texts(),

@@ -82,6 +82,30 @@ std::string curl_options(const std::string& url, double timeout_s) {
     return text + token_line(url);
 }
 
+/// Programs print addresses of their own settings, such as those of rclone.conf.
+std::string without_passwords(std::string text) {
+    for (std::size_t at = 0; (at = text.find("://", at)) != text.npos;) {
+        at += 3;
+        const std::size_t end = std::min(text.find_first_of("/ \"'", at), text.size());
+        const std::size_t user = text.substr(0, end).rfind('@');
+        if (user != text.npos && user >= at) text.erase(at, user + 1 - at);
+    }
+    return text;
+}
+
+constexpr const char* kAbsent = "has no such image";
+
+/// What helps where a program or this one gave that fault.
+const char* remedy_of(const std::string& fault) {
+    const auto has = [&](const char* words) { return fault.find(words) != fault.npos; };
+    if (fault == kAbsent || has("SHA-256") || has("error: 404"))
+        return "put it there again, or remove its sidecar and approve a new one";
+    if (has("401") || has("403"))
+        return "check ~/.netrc, rclone.conf, or AFTERSHADE_STORE_TOKEN with AFTERSHADE_STORE_TOKEN_URL";
+    if (has("timed out") || has("time limit")) return "check the store, or allow more time with --timeout";
+    return "check the address in the suite's 'store', and that it can be reached from here";
+}
+
 /// Runs it with each line that it prints, and returns why it failed; "" where it did not.
 std::string fault_of_program(const std::string& program, const std::string& package, WorkerCommand command,
                              const WorkerListener& listener, const std::atomic<bool>& interrupt) {
@@ -92,11 +116,12 @@ std::string fault_of_program(const std::string& program, const std::string& pack
     std::string last;
     WorkerListener with_errors = listener;
     with_errors.on_stderr = [&](std::string_view line) {
-        if (!trimmed(line).empty()) last = printable(trimmed(line));
+        if (!trimmed(line).empty()) last = without_passwords(printable(trimmed(line)));
     };
     const WorkerResult result = run_worker(command, with_errors, &interrupt);
     if (result.succeeded()) return "";
-    if (result.end != WorkerEnd::exited) return program + " " + describe(result);
+    if (result.end != WorkerEnd::exited)
+        return program + describe(result).substr(std::string_view("the worker").size());
     return fmt::format("{} ended with code {}{}{}", program, result.exit_code, last.empty() ? "" : ": ",
                        last);
 }
@@ -127,10 +152,10 @@ std::map<std::string, std::string> GoldenStore::fetch(const std::set<std::string
     for (const std::string& digest : digests) {
         const std::string found = sha256_of_file(folder / stored_name(digest));
         std::string& fault = faults[digest];
-        if (fault.empty() && found.empty()) fault = "has no such image";
+        if (fault.empty() && found.empty()) fault = kAbsent;
         else if (fault.empty() && found != digest) fault = "its bytes have the SHA-256 " + found;
         if (fault.empty()) faults.erase(digest);
-        else fault = fmt::format("{}: {}: {}", store_, stored_name(digest), fault);
+        else fault = fmt::format("{}: {}: {} ({})", store_, stored_name(digest), fault, remedy_of(fault));
     }
     return faults;
 }
@@ -176,8 +201,12 @@ GoldenStore::Faults GoldenStore::by_folder(Direction direction, const std::set<s
             if (fault.empty() && direction == Direction::fetch) write_text_file(folder / name, bytes);
         } else if (fault.empty()) {
             const std::string bytes = read_text_file(folder / name, ErrorKind::output, kMaxStoredBytes);
-            fs::create_directories(there);
-            write_text_file(path_below(there, name), bytes);
+            std::error_code failure;
+            fs::create_directories(there, failure);
+            if (failure)
+                fault = "the store's folder cannot be made: " + failure.message() +
+                        " (remove what is in its place, or name another 'store')";
+            else write_text_file(path_below(there, name), bytes);
         }
         if (!fault.empty()) faults[digest] = fault;
     }

@@ -14,8 +14,8 @@ std::vector<std::string> child_environment(const WorkerCommand& command) {
     added[kStatusFdVariable] = std::to_string(kStatusDescriptor);
     std::vector<std::string> all;
     for (char** entry = environ; *entry; ++entry) {
-        const std::string text = *entry;
-        if (!added.contains(text.substr(0, text.find('=')))) all.push_back(text);
+        const std::string text = *entry, name = text.substr(0, text.find('='));
+        if (!added.contains(name) && !command.without.contains(name)) all.push_back(text);
     }
     for (const auto& [name, value] : added) all.push_back(name + "=" + value);
     return all;

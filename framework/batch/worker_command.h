@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct WorkerCommand {
     /// The first is the program's path. PATH is not searched, and no shell looks at any.
     std::vector<std::string> arguments;
     std::map<std::string, std::string> environment;  ///< added to this process's, or in its place
+    std::set<std::string> without;                   ///< variables of this process that it does not get
     WorkerLimits limits;
     /// It writes to this process's standard output and error, and the listener hears none of it.
     bool shares_streams = false;

@@ -84,5 +84,23 @@ TEST(GoldenApprovers, AreKnownByTheirAddressAndTheirCases) {
     EXPECT_FALSE(approvers.may("Eve <>", "bloom/lamps"));
 }
 
+TEST(GoldenApprovers, OfAListWithoutNamesAreNobodyWithAnError) {
+    const TemporaryFolder folder;
+    for (const auto& [approvers, fault] :
+         {std::pair{"[]", "'approvers' is empty, so no one may approve"},
+          {R"([ { "cases": ["*"] } ])", "'who' has no address"},
+          {R"([ { "who": [] } ])", "'who' has no address"},
+          {R"([ { "who": [""] } ])", "'who' has no address"},
+          {R"([ { "who": ["ada@example.org"], "cases": [] } ])", "'cases' is empty"}}) {
+        SCOPED_TRACE(approvers);
+        write_text(folder / "approvers.json",
+                   std::string(R"({ "aftershade": 1, "approvers": )") + approvers + " }");
+        Diagnostics faults;
+        EXPECT_FALSE(read_approvers(folder / "approvers.json", faults).may("ada@example.org", "lens"));
+        EXPECT_NE(joined(lines_of(faults), "\n", "\n").find(fault), std::string::npos)
+            << joined(lines_of(faults), "\n", "\n");
+    }
+}
+
 }  // namespace
 }  // namespace aftershade::test

@@ -129,6 +129,35 @@ TEST_F(GoldenApply, NeedsAListOfWhoMayApprove) {
     EXPECT_EQ(apply({"decisions.json", "--approvers", "base.json"}).exit_code, 0);
 }
 
+TEST_F(GoldenApply, RefusesOptionsAndListsThatAreEmpty) {
+    write_decisions(Json::array({{{"case", "corner"}, {"decision", "approve"}, {"by", "ada@example.org"}}}));
+    for (const char* option : {"--approvers", "--author", "--commits"}) {
+        const CommandResult result = apply({"decisions.json", option, ""});
+        EXPECT_EQ(result.exit_code, 64) << option;
+        EXPECT_NE(result.err.find(std::string(option) + ": is empty"), std::string::npos) << result.err;
+    }
+    write_text(folder_ / "approvers.json", R"({ "aftershade": 1, "approvers": [] })");
+    const CommandResult nobody = apply({"decisions.json"});
+    EXPECT_EQ(nobody.exit_code, 64);
+    EXPECT_NE(nobody.err.find("no one may approve; write \"approvers\": [{"), std::string::npos)
+        << nobody.err;
+    EXPECT_EQ(contents(folder_ / "goldens"), before_);
+}
+
+TEST_F(GoldenApply, SaysWhichTagsDoNotCountAfterARevert) {
+    git({"init", "-q"});
+    git({"commit", "-q", "--allow-empty", "-m", "Begin"});
+    git({"tag", "begin"});
+    git({"commit", "-q", "--allow-empty", "-m", "Widen\n\ngolden: approve lens"});
+    git({"commit", "-q", "--allow-empty", "-m", "Revert \"Widen\"\n\ngolden: approve lens"});
+    const CommandResult result = apply({"--commits", "begin..HEAD"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(result.err.find("is reverted by a later commit"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("no decision: nothing was written"), std::string::npos) << result.err;
+    EXPECT_EQ(contents(folder_ / "goldens"), before_);
+}
+
 TEST_F(GoldenApply, EndsWithAFailureWhereACaseIsRejected) {
     write_decisions(
         {{{"case", "corner"}, {"decision", "approve"}, {"by", "ada@example.org"}},

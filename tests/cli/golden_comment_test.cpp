@@ -1,9 +1,12 @@
 // What `golden comment` makes of a report, its own and a stranger's.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <regex>
 
+#include "framework/base/text.h"
 #include "framework/file/png_file.h"
 #include "tests/cli/golden_suite.h"
 
@@ -114,6 +117,56 @@ TEST_F(GoldenComment, OfAStrangersReportHasNoMarkdownButItsOwn) {
     EXPECT_EQ(result.out.find("\n# big"), result.out.npos);
     const CommandResult annotated = comment({"--annotations"});
     EXPECT_EQ(std::count(annotated.out.begin(), annotated.out.end(), '\n'), 1) << annotated.out;
+}
+
+TEST_F(GoldenComment, NamesFiguresThatJsonLacks) {
+    report_a_failure();
+    for (const auto& [value, shown] :
+         {std::pair{"nan", "`NaN at (31, 17) B`"}, {"inf", "`inf at (31, 17) B`"}}) {
+        change_report([&](Json& report) {
+            Json& layer = report["cases"][1]["images"][0]["comparison"]["layers"][0];
+            layer["max_error"] = {{"value", value}, {"x", 31}, {"y", 17}, {"channel", "B"}};
+            layer["failing"]["percent"] = value;
+            report["counts"]["failed"] = 1e300;
+        });
+        const CommandResult result = comment({"--sarif", "golden.sarif"});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_NE(result.out.find(shown), result.out.npos) << result.out;
+        EXPECT_TRUE(Json::accept(read_text(folder_ / "golden.sarif")));
+    }
+    for (const float value : {std::numeric_limits<float>::infinity(), std::nanf("")}) {
+        change_image(image("corner.color.0001"), [&](Image& pixels) { pixels.at(31, 17, 2) = value; });
+        EXPECT_EQ(run({"--report", "report"}).exit_code, 2);
+        const CommandResult result = comment();
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_NE(result.out.find(" at (31, 17) B`"), result.out.npos) << result.out;
+    }
+}
+
+TEST_F(GoldenComment, IsCutBetweenLinesAndCharacters) {
+    report_a_failure();
+    change_report([](Json& report) {
+        std::string name;
+        for (int i = 0; i < 120; ++i) name += "ä€|";
+        report["suite"] = std::string(299, '&') + "<" + name;
+        Json test = report["cases"][1];
+        test["name"] = "x" + name;
+        test["images"][0]["verdict"] = "<b>";
+        for (int i = 0; i < 400; ++i) report["cases"].push_back(test);
+        for (int i = 0; i < 400; ++i) report["orphans"].push_back(name);
+        report["approve"] = std::string(100'000, 'x');
+    });
+    const CommandResult result = comment({"--rows", "1000"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_LE(result.out.size(), 60'000u);
+    EXPECT_GE(result.out.size(), 50'000u);
+    EXPECT_EQ(printable_lines(result.out), result.out) << "UTF-8";
+    EXPECT_EQ(result.out.find('?'), result.out.npos) << "no character is cut";
+    EXPECT_NE(result.out.find(" | `<b>` | "), result.out.npos) << "a verdict of another program is code";
+    EXPECT_NE(result.out.find(" more in the report.\n"), result.out.npos);
+    EXPECT_NE(result.out.find("The command to approve is in the report."), result.out.npos);
+    for (const std::string& line : lines_of_text(result.out))
+        if (line.starts_with("| `")) EXPECT_TRUE(line.ends_with("` |")) << line;
 }
 
 TEST_F(GoldenComment, OfWhatIsNoReportIsAFileError) {

@@ -75,9 +75,9 @@ TEST_F(OcioCommand, DescribesTheNamesOfTheConfig) {
     const CommandResult text = run_aftershade(
         {"describe", "film", "--effect-path", "effects", "--ocio", "studio.ocio"}, folder_.path());
     EXPECT_NE(text.out.find("display 'Monitor' has the views 'Film'"), std::string::npos) << text.out;
-    const CommandResult json = run_aftershade(
+    const CommandResult described = run_aftershade(
         {"describe", "film", "--effect-path", "effects", "--ocio", "studio.ocio", "--json"}, folder_.path());
-    const auto names = nlohmann::json::parse(json.out).at("ocio");
+    const auto names = nlohmann::json::parse(described.out).at("ocio");
     EXPECT_EQ(names.at("displays").at("Monitor").at(0), "Film");
     EXPECT_EQ(names.at("spaces"), (nlohmann::json{"light", "film"}));
     EXPECT_EQ(names.at("roles").at("default"), "light");
