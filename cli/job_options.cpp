@@ -2,10 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 
 #include "cli/number_options.h"
 #include "framework/base/cores.h"
+#include "framework/base/whole_number.h"
 #include "framework/document/units.h"
 #include "framework/run/warmup.h"
 
@@ -16,13 +16,6 @@ namespace {
 using Environment = std::function<const char*(const char*)>;
 
 constexpr int kMostWorkers = 1024;
-
-std::optional<int> whole_number(std::string_view text) {
-    int value = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 std::optional<int> number_of(const Environment& environment, const char* name) {
     const char* value = environment(name);

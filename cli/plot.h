@@ -21,9 +21,8 @@ struct PlotPanel {
     std::vector<PlotLine> lines;
 };
 
-/// At most kPlotLines lines a panel; each has its own colour and dashes, the same in every panel, named under
+/// At most three lines a panel; each has its own colour and dashes, the same in every panel, named under
 /// the title by the first panel's legend. Panels stand two in a row.
-inline constexpr std::size_t kPlotLines = 3;
 std::string plot_svg(const std::string& title, const std::string& caption,
                      const std::vector<PlotPanel>& panels);
 

@@ -1,7 +1,7 @@
 # aftershade_module(NAME LINKS ... PRIVATE_LINKS ... OPTIMISED SOURCES...)
 #
 # One target per folder of framework/, of every .cpp file in it. LINKS names what the module's headers use; everything
-# else is private, so that an include against the direction of CONTRIBUTING.md fails to compile or link. OPTIMISED names
+# else is private, so that an include against the direction of docs/architecture.md fails to compile or link. OPTIMISED names
 # the sources whose loops over pixels decide a run's time; the others compile in two thirds of the time at -O1.
 option(AFTERSHADE_UNITY "Compile several sources at once: a third of a full build's time, slower after small changes" ON)
 

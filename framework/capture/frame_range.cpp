@@ -1,7 +1,6 @@
 #include "framework/capture/frame_range.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -9,17 +8,11 @@
 #include <utility>
 
 #include "framework/base/text.h"
+#include "framework/base/whole_number.h"
 
 namespace aftershade {
 
 namespace {
-
-std::optional<int> parse_int(std::string_view text) {
-    int value = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 bool take(std::string_view& text, std::string_view word) {
     if (!text.starts_with(word)) return false;
@@ -33,7 +26,7 @@ constexpr std::size_t kMaxDigits = 9;
 std::optional<int> take_number(std::string_view& text) {
     const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
     if (digits > kMaxDigits) return std::nullopt;
-    const auto number = parse_int(text.substr(0, digits));
+    const auto number = whole_number(text.substr(0, digits));
     text.remove_prefix(digits);
     return number;
 }
@@ -199,7 +192,7 @@ std::optional<int> FramePattern::number_in(std::string_view name) const {
     if (end.substr(0, dot) != own_end.substr(0, dot) ||
         lower_case(end.substr(dot)) != lower_case(own_end.substr(dot)))
         return std::nullopt;
-    return parse_int(name.substr(start_, digits));
+    return whole_number(name.substr(start_, digits));
 }
 
 std::optional<int> frame_in_name(std::string_view stem) {
@@ -207,7 +200,7 @@ std::optional<int> frame_in_name(std::string_view stem) {
     if (last == std::string_view::npos) return std::nullopt;
     std::size_t first = last;
     while (first > 0 && stem[first - 1] >= '0' && stem[first - 1] <= '9') --first;
-    return parse_int(stem.substr(first, last - first + 1));
+    return whole_number(stem.substr(first, last - first + 1));
 }
 
 }  // namespace aftershade

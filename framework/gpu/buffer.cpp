@@ -63,13 +63,4 @@ void Buffer::clear(std::uint32_t value) {
     handle_.context().check(fmt::format("clearing buffer '{}'", label_));
 }
 
-void Buffer::copy_from(const Buffer& other) {
-    assert(bytes_ == other.bytes_);
-    handle_.context().make_current();
-    handle_.context().impl().wait_for_draws();
-    handle_.context().gl().CopyNamedBufferSubData(other.handle(), handle(), 0, 0,
-                                                  static_cast<GLsizeiptr>(bytes_));
-    handle_.context().check(fmt::format("copying buffer '{}' to '{}'", other.label_, label_));
-}
-
 }  // namespace aftershade::gpu

@@ -22,7 +22,6 @@ public:
     void write(std::span<const std::byte> values, std::size_t offset = 0);
     std::vector<std::byte> read() const;
     void clear(std::uint32_t value);
-    void copy_from(const Buffer& other);  ///< of the same size
 
     unsigned int handle() const { return handle_.name(); }  ///< for framework/gpu
 

@@ -51,10 +51,6 @@ std::optional<TransferWay> parse_transfer_way(std::string_view name) {
     return static_cast<TransferWay>(found - kNames.begin());
 }
 
-std::string_view transfer_way_name(TransferWay way) {
-    return kNames[static_cast<std::size_t>(way)];
-}
-
 TransferWay chosen_transfer_way(bool is_software) {
     if (const char* const name = std::getenv("AFTERSHADE_TRANSFERS"); name && *name) {
         const auto named = parse_transfer_way(name);

@@ -27,7 +27,6 @@ namespace aftershade::gpu {
 enum class TransferWay { automatic, direct, mapped };
 /// "auto", "direct", "mapped".
 std::optional<TransferWay> parse_transfer_way(std::string_view name);
-std::string_view transfer_way_name(TransferWay way);
 /// What $AFTERSHADE_TRANSFERS names, else `direct` on a software renderer, whose memory is the caller's, and
 /// `mapped` elsewhere. Throws Error(ErrorKind::usage) for an unknown name.
 TransferWay chosen_transfer_way(bool is_software);

@@ -1,12 +1,12 @@
 #include "framework/look/value_source.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/base/whole_number.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
@@ -16,13 +16,6 @@
 namespace aftershade {
 
 namespace {
-
-std::optional<int> frame_number(const std::string& text) {
-    int number = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return number;
-}
 
 constexpr const char *kDepthSource = "depth", *kLuminanceSource = "luminance";
 
@@ -53,7 +46,7 @@ struct SourceReader {
             sound = false;
         }
         for (const Member& member : keys->members) {
-            const auto frame = frame_number(member.key);
+            const auto frame = whole_number(member.key);
             if (!frame)
                 diagnostics.error(member.key_place, label + ": '" + member.key + "' is not a frame number");
             auto parsed = eased_key(member.value);

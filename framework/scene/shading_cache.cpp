@@ -158,10 +158,6 @@ std::optional<ShadingCache> parse_shading_cache(std::string_view name) {
     return value_named(kCacheNames, name);
 }
 
-std::string_view shading_cache_name(ShadingCache cache) {
-    return name_of(kCacheNames, cache);
-}
-
 CacheCounts replay(const SampleIds& samples, const ShadingCacheSettings& settings) {
     switch (settings.cache) {
         case ShadingCache::global: return replay_with(InfiniteCache(false), samples, settings.tile_px);

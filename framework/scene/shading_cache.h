@@ -19,7 +19,6 @@ enum class ShadingCache {
 
 /// "global", "tile", "sorted", "lru", "fifo"; nullopt for anything else.
 std::optional<ShadingCache> parse_shading_cache(std::string_view name);
-std::string_view shading_cache_name(ShadingCache cache);
 
 struct ShadingCacheSettings {
     ShadingCache cache = ShadingCache::global;

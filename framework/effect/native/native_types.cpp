@@ -59,12 +59,6 @@ std::string native_uniform_type_name(NativeUniformType type) {
     return found == kUniforms.end() ? "?" : found->name;
 }
 
-std::vector<std::string> native_uniform_type_names() {
-    std::vector<std::string> names;
-    for (const UniformName& uniform : kUniforms) names.emplace_back(uniform.name);
-    return names;
-}
-
 std::optional<NativeElement> parse_native_element(std::string_view name) {
     const auto found =
         std::find_if(kElements.begin(), kElements.end(), [&](const auto& e) { return e.name == name; });
@@ -73,12 +67,6 @@ std::optional<NativeElement> parse_native_element(std::string_view name) {
 
 std::string_view native_element_name(NativeElement element) {
     return kElements.at(std::size_t(element)).name;
-}
-
-std::vector<std::string> native_element_names() {
-    std::vector<std::string> names;
-    for (const ElementName& element : kElements) names.emplace_back(element.name);
-    return names;
 }
 
 std::size_t native_element_bytes(NativeElement element) {

@@ -27,7 +27,6 @@ struct NativeUniformType {
 /// "vec3", ...; nullopt for anything else.
 std::optional<NativeUniformType> parse_native_uniform_type(std::string_view name);
 std::string native_uniform_type_name(NativeUniformType type);
-std::vector<std::string> native_uniform_type_names();
 
 /// The numbers are the ABI's.
 enum class NativeElement { float_ = 0, vec2, vec4, uint_, uvec2, uvec4 };
@@ -35,7 +34,6 @@ enum class NativeElement { float_ = 0, vec2, vec4, uint_, uvec2, uvec4 };
 /// "float", "vec2", "vec4", "uint", "uvec2", "uvec4"; nullopt for anything else.
 std::optional<NativeElement> parse_native_element(std::string_view name);
 std::string_view native_element_name(NativeElement element);
-std::vector<std::string> native_element_names();
 std::size_t native_element_bytes(NativeElement element);
 
 inline constexpr int kMaxNativeTableSide = 1024;
