@@ -141,8 +141,8 @@ void add_diagnosis_options(CLI::App& app, RunArguments& options) {
                  "Draw each pass by itself, also where passes could be fused: the time of each, slower");
     app.add_flag(
         "--plain", options.plain,
-        "Draw without what is done for software GL alone (docs/llvmpipe.md): the same picture, slower; "
-        "for faults of a driver");
+        "Draw without loads from images, fusion and compiling ahead (docs/llvmpipe.md): the same picture, "
+        "slower; for faults of a driver");
     app.add_option("--telemetry", options.telemetry,
                    "Write each frame's statistics, memory by format and time by pass to this .json");
     app.add_option("--telemetry-plot", options.telemetry_plot,

@@ -1,6 +1,8 @@
 #include "framework/batch/golden_approve.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <list>
 #include <map>
 #include <mutex>
@@ -53,8 +55,11 @@ public:
     void add_image(const fs::path& target, const fs::path& image) {
         AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));
         std::error_code failure;
+        errno = 0;  // libstdc++ calls a full disk an input/output error
         fs::copy_file(image, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
-        if (failure) throw Error(ErrorKind::output, target.string() + ": " + failure.message());
+        if (failure)
+            throw Error(ErrorKind::output,
+                        target.string() + ": " + (errno ? std::strerror(errno) : failure.message()));
     }
     void add_text(const fs::path& target, const std::string& text) {
         AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));
