@@ -14,6 +14,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,14 +101,9 @@ TEST(Architecture, IncludesPointOneWay) {
     }
 }
 
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(Architecture, EveryModuleIsBuiltAndDescribed) {
-    const std::string built = text_of(kRoot / "framework/CMakeLists.txt"),
-                      described = text_of(kRoot / "docs/architecture.md");
+    const std::string built = aftershade::test::read_text(kRoot / "framework/CMakeLists.txt"),
+                      described = aftershade::test::read_text(kRoot / "docs/architecture.md");
     for (const auto& [module, allowed] : kAllowed) {
         EXPECT_TRUE(fs::is_directory(kRoot / "framework" / module))
             << "framework/" << module << " is gone: take it out of this test";

@@ -11,15 +11,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.h"
+
 namespace {
 
 namespace fs = std::filesystem;
 const fs::path kSources = AFTERSHADE_SOURCE_DIR;
-
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 struct Dependency {
     std::string version;
@@ -29,7 +26,7 @@ struct Dependency {
 std::map<std::string, Dependency> listed() {
     std::map<std::string, Dependency> dependencies;
     const std::regex row(R"(\| ([\w.+-]+) \| (\S+) \| ([^|]+) \| (\w*) ?\| ([^|]+) \|)");
-    std::istringstream lines(text_of(kSources / "docs/dependencies.md"));
+    std::istringstream lines(aftershade::test::read_text(kSources / "docs/dependencies.md"));
     for (std::string line; std::getline(lines, line);) {
         std::smatch match;
         if (!std::regex_match(line, match, row) || match[1] == "package") continue;
@@ -57,7 +54,7 @@ std::set<std::string> array_of(const std::string& script, const std::string& nam
 }
 
 TEST(Dependencies, AreThoseThatTheScriptsInstall) {
-    const std::string setup = text_of(kSources / "scripts/setup.sh");
+    const std::string setup = aftershade::test::read_text(kSources / "scripts/setup.sh");
     std::set<std::string> installed = array_of(setup, "build_packages");
     installed.merge(array_of(setup, "gl_packages"));
     ASSERT_GE(installed.size(), 15u);
@@ -66,18 +63,18 @@ TEST(Dependencies, AreThoseThatTheScriptsInstall) {
         EXPECT_TRUE(dependencies.contains(package)) << package << " is not in docs/dependencies.md";
     std::string scripts;
     for (const auto& entry : fs::recursive_directory_iterator(kSources / "scripts"))
-        if (entry.is_regular_file()) scripts += text_of(entry.path());
+        if (entry.is_regular_file()) scripts += aftershade::test::read_text(entry.path());
     for (const auto& [package, dependency] : dependencies)
         EXPECT_TRUE(installed.contains(package) || scripts.find(package) != std::string::npos)
             << package << " is in docs/dependencies.md, and no script installs it";
 }
 
 TEST(Dependencies, AreThoseThatCMakeLooksFor) {
-    std::string cmake = text_of(kSources / "CMakeLists.txt");
+    std::string cmake = aftershade::test::read_text(kSources / "CMakeLists.txt");
     for (const char* folder : {"cmake", "framework", "cli", "effects", "python", "tests"})
         for (const auto& entry : fs::recursive_directory_iterator(kSources / folder))
             if (entry.path().filename() == "CMakeLists.txt" || entry.path().extension() == ".cmake")
-                cmake += text_of(entry.path());
+                cmake += aftershade::test::read_text(entry.path());
     std::set<std::string> wanted = all_matches(cmake, R"(find_(?:package|path|program|library)\((\w+))");
     EXPECT_EQ(wanted.erase("Threads"), 1u) << "of the C library";
     std::set<std::string> named;
@@ -87,11 +84,11 @@ TEST(Dependencies, AreThoseThatCMakeLooksFor) {
 }
 
 TEST(Dependencies, HaveTheVersionsOfDebian12) {
-    if (text_of("/etc/os-release").find("VERSION_ID=\"12\"") == std::string::npos)
+    if (aftershade::test::read_text("/etc/os-release").find("VERSION_ID=\"12\"") == std::string::npos)
         GTEST_SKIP() << "this is not Debian 12";
     const std::regex package(R"(Package: (\S+))"), version(R"(Version: (?:\d+:)?(\S+))");
     std::map<std::string, std::string> installed;
-    std::istringstream lines(text_of("/var/lib/dpkg/status"));
+    std::istringstream lines(aftershade::test::read_text("/var/lib/dpkg/status"));
     std::string name;
     for (std::string line; std::getline(lines, line);) {
         std::smatch match;
