@@ -167,7 +167,8 @@ namespace {
 std::string status_of(int process, const std::string& name) {
     std::ifstream in("/proc/" + std::to_string(process) + "/status");
     for (std::string line; std::getline(in, line);)
-        if (line.starts_with(name + ":")) return std::string(trimmed(std::string_view(line).substr(name.size() + 2)));
+        if (line.starts_with(name + ":"))
+            return std::string(trimmed(std::string_view(line).substr(name.size() + 2)));
     return "";
 }
 
