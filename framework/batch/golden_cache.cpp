@@ -1,10 +1,9 @@
 #include "framework/batch/golden_cache.h"
 
-#include <algorithm>
 #include <system_error>
-#include <vector>
 
 #include "framework/base/atomic_file.h"
+#include "framework/base/cache_room.h"
 #include "framework/base/sha256.h"
 #include "framework/base/side_file.h"
 #include "framework/batch/golden_store.h"
@@ -59,30 +58,7 @@ void GoldenCache::save(const std::string& digest, std::string_view bytes) {
 }
 
 void GoldenCache::make_room() {
-    struct Kept {
-        fs::file_time_type used;
-        std::uintmax_t bytes;
-        fs::path path;
-    };
-    std::vector<Kept> images;
-    std::uintmax_t sum = 0;
-    std::error_code failure;
-    for (fs::directory_iterator entry(folder_ / kBelow, failure), end; !failure && entry != end;
-         entry.increment(failure)) {
-        const fs::path& path = entry->path();
-        if (!is_cached_image(path)) continue;
-        std::error_code gone;  // another process makes room too
-        const Kept kept{entry->last_write_time(gone), entry->file_size(gone), path};
-        if (gone) continue;
-        sum += kept.bytes;
-        images.push_back(kept);
-    }
-    std::ranges::sort(images, {}, &Kept::used);
-    for (const Kept& kept : images) {
-        if (sum <= max_bytes_) return;
-        fs::remove(kept.path, failure);
-        sum -= kept.bytes;
-    }
+    make_cache_room(folder_ / kBelow, max_bytes_, is_cached_image);
 }
 
 }  // namespace aftershade

@@ -2,16 +2,15 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
-#include <vector>
 
 #include "framework/base/atomic_file.h"
+#include "framework/base/cache_room.h"
 #include "framework/base/content_hash.h"
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
@@ -119,31 +118,7 @@ std::string ProgramStore::fault() const {
 }
 
 void ProgramStore::make_room() const {
-    struct Kept {
-        fs::file_time_type written;
-        std::uintmax_t bytes;
-        fs::path path;
-    };
-    std::vector<Kept> programs;
-    std::uintmax_t sum = 0;
-    std::error_code failure;
-    for (fs::directory_iterator entry(folder_, failure), end; !failure && entry != end;
-         entry.increment(failure)) {
-        if (entry->path().extension() != kExtension) continue;
-        std::error_code gone;  // another process makes room too
-        const Kept kept{entry->last_write_time(gone), entry->file_size(gone), entry->path()};
-        if (gone) continue;
-        sum += kept.bytes;
-        programs.push_back(kept);
-    }
-    if (sum <= max_bytes_) return;
-    std::sort(programs.begin(), programs.end(),
-              [](const Kept& a, const Kept& b) { return a.written < b.written; });
-    for (const Kept& kept : programs) {
-        if (sum <= max_bytes_) return;
-        fs::remove(kept.path, failure);
-        sum -= kept.bytes;
-    }
+    make_cache_room(folder_, max_bytes_, [](const fs::path& file) { return file.extension() == kExtension; });
 }
 
 void ProgramStore::save(const std::string& key, const gpu::ProgramBinary& binary) const {
