@@ -192,7 +192,7 @@ TEST(Decoupled, WhereLensAndShutterMeetIsNearerToTheTruthThanOneAfterTheOther) {
     EXPECT_GE(display_psnr_db_where(all, both, mixed), display_psnr_db_where(all, both, apart) + 0.3);
 }
 
-/// Of pixels that are not square, too.
+/// The pixels need not be square.
 TEST(Decoupled, TakesThePictureInTurnBitForBitWhereNothingMoves) {
     Capture capture = near_box_before_focus();
     const std::string lens =

@@ -47,7 +47,7 @@ bool is_revert(const TaggedCommit& commit) {
            !hashes_after(commit.message, "This reverts commit ").empty();
 }
 
-/// Of the commits before the `count`-th, those that one of the hashes begins and what led to them.
+/// The hashes of those of the first `count` commits that one of `hashes` abbreviates, and of their ancestors.
 std::set<std::string> with_ancestors(const std::vector<TaggedCommit>& commits, std::size_t count,
                                      const std::vector<std::string>& hashes) {
     std::set<std::string> found;

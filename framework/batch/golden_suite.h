@@ -35,7 +35,7 @@ std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagno
 /// Without filters every case fits.
 bool fits_filter(const GoldenCase& test, const std::vector<std::string>& filters);
 
-/// What is wrong with a name, glob or tag that fits no case of the suite; names one that is like it.
+/// What is wrong with a name, glob or tag that matches no case of the suite, and the nearest name.
 std::string no_case_fits(const GoldenSuite& suite, const std::string& filter);
 
 /// Images (and sidecars without one) in the folders of goldens that no case of the suite gives. With filters

@@ -65,7 +65,8 @@ bool are_near(const ColorMatrix& a, const ColorMatrix& b) {
     return std::ranges::equal(a, b, [](double x, double y) { return std::abs(x - y) <= kTolerance; });
 }
 
-/// Of which the matrix makes Rec. 709. Other primaries than the usual ones are given for Rec. 709's white.
+/// The primaries that the matrix converts to Rec. 709. Unless they are of a space with a name, they are given
+/// for the white of Rec. 709.
 Chromaticities primaries_of(const ColorMatrix& to_rec709) {
     for (const std::string& name : color_space_names())
         if (const Chromaticities known = *color_space_primaries(name);

@@ -11,12 +11,12 @@
 
 namespace aftershade {
 
-/// Of a space that the config takes to ACES2065-1, or of a display to CIE XYZ, by one of the curves of
-/// ColorEncoding and a matrix; nullopt for others, such as logarithms, and where the config says no such way.
-/// Names play no part. Throws ocio::Exception.
+/// The encoding of a space, if the config converts it to ACES2065-1 (a display: to CIE XYZ) by a curve of
+/// ColorEncoding and a matrix. nullopt for other spaces, such as logarithmic ones, and if the config has no
+/// such conversion. It is measured, not read from names. Throws ocio::Exception.
 std::optional<ColorEncoding> encoding_of_space(const OcioConfig& config, const std::string& space);
 
-/// Of what the request makes: of the display's space, or of the destination.
+/// The encoding of what the request makes: that of the display's space, or of the destination.
 std::optional<ColorEncoding> encoding_of_result(const OcioConfig& config, const ColorRequest& request);
 
 }  // namespace aftershade

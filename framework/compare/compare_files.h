@@ -96,9 +96,9 @@ struct Comparison {
 struct LayerImages {
     Image reference, test;
     PixelAreas areas = {};
-    /// Of the light in each image, where the layer is `color`.
+    /// The primaries of each image, where the layer is `color`.
     Chromaticities reference_primaries = kRec709, test_primaries = kRec709;
-    /// Of each image, where the layer is `display`.
+    /// The encoding of each image, where the layer is `display`.
     ColorEncoding reference_display = kSrgbDisplay, test_display = kSrgbDisplay;
 };
 

@@ -140,7 +140,7 @@ std::optional<LayerImages> in_srgb(const LayerImages& images) {
     return converted;
 }
 
-/// Of sRGB-encoded values, which may be above 1.
+/// Decodes values of sRGB, which may be above 1.
 void decode(LayerImages& images) {
     for (Image* image : {&images.reference, &images.test})
         for (float& value : image->floats()) value = float(decode_srgb(double(value)));

@@ -32,7 +32,7 @@ struct ColorEncoding {
     bool operator==(const ColorEncoding&) const = default;
 };
 
-/// Of the screen of IEC 61966-2-1.
+/// The display of IEC 61966-2-1.
 inline constexpr ColorEncoding kSrgbDisplay{kRec709, ColorEncoding::Curve::srgb, 1};
 
 /// By a name of the Color Interop Forum ("lin_ap1_scene", "g22_rec709_scene", "data"), or one that

@@ -23,6 +23,19 @@ import {
 import { drawn } from "./served.mjs";
 import { program } from "./suite.mjs";
 
+/** The exposure that the page shows in frame 1 is that of `run` with the look on the page. */
+async function isTakenByRun(shown, page) {
+  const file = join(folder, "explained.json");
+  writeFileSync(file, await textOf(page));
+  const { stdout } = spawnSync(
+    program,
+    ["run", file, capture, "-o", join(folder, "explained.png"), "--frames", "1", "--explain"],
+    { encoding: "utf8", env: environment },
+  );
+  const [, taken] = /^.*\bexposure\b\D*([-.\de]+)/m.exec(stdout.slice(stdout.indexOf("color_grade")));
+  assert.ok(Math.abs(shown - Number(taken)) < 1e-5, `${shown} on the page, ${taken} in run`);
+}
+
 const knots = (card, id) => row(card, id).locator(".knot");
 
 inPage("keys a value at the scrubber's frames, marks them, and draws what `run` draws", async (page, { look }) => {
@@ -81,15 +94,7 @@ for (const [interpolation, expected] of [
     assert.equal(look.steps[1].params.exposure.interpolation, interpolation);
     const shown = Number(await exposure.getByRole("textbox").inputValue());
     assert.ok(Math.abs(shown - expected) < 1e-5, String(shown));
-    const file = join(folder, `keyed_${interpolation}.json`);
-    writeFileSync(file, await textOf(page));
-    const { stdout } = spawnSync(
-      program,
-      ["run", file, capture, "-o", join(folder, "explained.png"), "--frames", "1", "--explain"],
-      { encoding: "utf8", env: environment },
-    );
-    const [, taken] = /^.*\bexposure\b\D*([-.\de]+)/m.exec(stdout.slice(stdout.indexOf("color_grade")));
-    assert.ok(Math.abs(shown - Number(taken)) < 1e-5, `${shown} on the page, ${taken} in run`);
+    await isTakenByRun(shown, page);
   });
 
 inPage("moves and removes keys by the keyboard, with the focus kept", async (page) => {
@@ -186,16 +191,8 @@ inPage(
     assert.deepEqual((await exposure()).keys[0].interpolation, [0.35, 0.2, 0.6, 1]);
     assert.equal(await handles.first().getAttribute("aria-valuetext"), "20 % of the change after 35 % of the frames");
     // The field has the number of the program's own curve.
-    const shown = Number(await controls.getByRole("textbox").inputValue()),
-      file = join(folder, "curve.json");
-    writeFileSync(file, await textOf(page));
-    const { stdout } = spawnSync(
-      program,
-      ["run", file, capture, "-o", join(folder, "explained.png"), "--frames", "1", "--explain"],
-      { encoding: "utf8", env: environment },
-    );
-    const [, taken] = /^.*\bexposure\b\D*([-.\de]+)/m.exec(stdout.slice(stdout.indexOf("color_grade")));
-    assert.ok(Math.abs(shown - Number(taken)) < 1e-5, `${shown} on the page, ${taken} in run`);
+    const shown = Number(await controls.getByRole("textbox").inputValue());
+    await isTakenByRun(shown, page);
     assert.ok(Math.abs(shown - 0.25) > 0.005, `${shown} is that of a straight line`);
     // A drag is one step of undo, and ends at the border.
     const before = await textOf(page),

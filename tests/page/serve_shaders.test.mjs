@@ -9,6 +9,15 @@ import { drawn } from "./served.mjs";
 import { program } from "./suite.mjs";
 import { TINT, tintShader } from "./tint.mjs";
 
+/** A sound shader in place of the faulty one is drawn, in green. */
+async function mends(page, shader) {
+  writeFileSync(shader, tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
+  await page.waitForFunction(() => !window.aftershade.store.state.faults.length);
+  const isGreen = ([red, green]) => green > red,
+    after = await centreOnce(page, isGreen);
+  assert.ok(isGreen(after), `${after}`);
+}
+
 /** A page on a look with an effect of the user's own; `files` is its folder. */
 function withTint(name, work, options = {}) {
   const effects = mkdtempSync(join(folder, "effects-")),
@@ -68,11 +77,7 @@ withTint(
     assert.equal(await textOf(page), before);
     assert.equal((await state(page)).can_undo, true);
     assert.equal(readFileSync(look, "utf8"), LOOK, "nothing is written before it is saved");
-    writeFileSync(shader, tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
-    await page.waitForFunction(() => !window.aftershade.store.state.faults.length);
-    const isGreen = ([red, green]) => green > red,
-      after = await centreOnce(page, isGreen);
-    assert.ok(isGreen(after), `${after}`);
+    await mends(page, shader);
     await page.keyboard.press("Control+z");
     await page.waitForFunction((text) => window.aftershade.store.state.text !== text, before);
     page.faults = page.faults.filter((words) => !words.includes("409")); // Chromium lists the refused picture
@@ -103,11 +108,7 @@ withTint(
     await drawn(page);
     await frame(page);
     assert.equal(await shown(), good, "for a page that is opened now, too");
-    writeFileSync(shader, tintShader("light * vec4(0.0, 2.0, 0.0, 1.0)"));
-    await page.waitForFunction(() => !window.aftershade.store.state.faults.length);
-    const isGreen = ([red, green]) => green > red,
-      after = await centreOnce(page, isGreen);
-    assert.ok(isGreen(after), `${after}`);
+    await mends(page, shader);
     await page.keyboard.press("Control+z");
     await page.waitForFunction((text) => window.aftershade.store.state.text !== text, before);
     page.faults = page.faults.filter((words) => !words.includes("409")); // Chromium lists the refused picture
