@@ -55,10 +55,10 @@ std::vector<const ParamSpec*> form_params(const EffectManifest& manifest) {
         add_subjects(pass.writes);
         add_subjects(pass.images);
         if (pass.repeat) names.insert(pass.repeat->param);
-        names.insert(pass.dispatch.tile.param);
-        if (!pass.instances) continue;
-        names.insert(pass.instances->count.param);
-        add_grid(pass.instances->grid);
+        if (pass.compute()) names.insert(pass.compute()->dispatch.tile.param);
+        if (!pass.draw() || !pass.draw()->instances) continue;
+        names.insert(pass.draw()->instances->count.param);
+        add_grid(pass.draw()->instances->grid);
     }
     std::vector<const ParamSpec*> specs;
     for (const ParamSpec& spec : manifest.params)

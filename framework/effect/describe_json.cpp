@@ -64,8 +64,8 @@ std::string describe_json(const EffectManifest& manifest) {
     for (const TileListSpec& list : manifest.tiles) result["tiles"][list.name] = {{"doc", list.doc}};
     for (const PassSpec& pass : manifest.passes) {
         json entry = {{"name", pass.name}, {"shader", pass.shader}, {"module", pass.module}};
-        if (!pass.over.empty()) entry["over"] = pass.over;
-        if (!pass.lists.empty()) entry["lists"] = pass.lists;
+        if (pass.over()) entry["over"] = *pass.over();
+        if (pass.lists()) entry["lists"] = *pass.lists();
         result["passes"].push_back(entry);
     }
     for (const PresetSpec& preset : manifest.presets) {

@@ -118,8 +118,8 @@ std::string flow_text(const EffectManifest& manifest, const PassSpec& pass) {
     const auto label = [](const auto& use) { return use.name + (use.previous ? ".prev" : ""); };
     for (const ReadSpec& read : pass.reads) add(reads, label(read), !read.when.empty());
     for (const WriteSpec& write : pass.writes) add(writes, write.name, !write.when.empty());
-    if (!pass.lists.empty()) return reads + " ->";
-    const TileListSpec* over = manifest.find_tile_list(pass.over);
+    if (pass.lists()) return reads + " ->";
+    const TileListSpec* over = manifest.tile_list_of(pass);
     for (const auto* list : {&pass.images, &pass.buffers})
         for (const AccessSpec& access : *list) {
             if (over && access.name == over->runs()) continue;
@@ -131,11 +131,11 @@ std::string flow_text(const EffectManifest& manifest, const PassSpec& pass) {
 
 /// "blur.frag", "lens/coc.frag" of a module, "tiles where near.r > 0" of the host.
 std::string shader_text(const EffectManifest& manifest, const PassSpec& pass) {
-    const TileListSpec* listed = manifest.find_tile_list(pass.lists);
+    const TileListSpec* listed = pass.lists() ? manifest.tile_list_of(pass) : nullptr;
     if (listed && listed->of) return "tiles where " + listed->of->text() + " > 0";
     if (listed) return "tiles by " + (pass.module.empty() ? "" : pass.module + "/") + pass.shader;
-    if (pass.kind == PassKind::copy) return "copy";
-    if (pass.shader.empty()) return "clear";
+    if (pass.copies()) return "copy";
+    if (pass.clear()) return "clear";
     return (pass.module.empty() ? "" : pass.module + "/") + pass.shader;
 }
 

@@ -104,7 +104,7 @@ ProgramCache::ProgramCache(gpu::Context& context, std::filesystem::path glsl_fol
 ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostics& faults) {
     ProgramSources sources;
     sources.label = context.manifest->id + "." + context.pass->name;
-    sources.is_compute = context.pass->kind == PassKind::compute;
+    sources.is_compute = context.pass->compute() != nullptr;
     sources.main = assemble_shader(context, faults);
     const bool guards = guards_loops_ && !faults.has_errors();
     std::string zeros;
@@ -118,12 +118,12 @@ ProgramSources ProgramCache::sources_of(const ShaderContext& context, Diagnostic
     }
     if (!faults.has_errors() && (guards || !zeros.empty())) wrap_main(sources.main, zeros, guards);
     if (sources.is_compute) return sources;
-    const bool has_vertex = !context.pass->vertex.empty();
+    const bool has_vertex = context.pass->vertex() != nullptr;
     if (has_vertex) sources.vertex_lines = assemble_shader(context, faults, ShaderFile::vertex);
     if (has_vertex && guards && !faults.has_errors()) wrap_main(sources.vertex_lines, "", true);
-    sources.vertex = has_vertex                   ? sources.vertex_lines.text
-                     : context.pass->over.empty() ? full_screen_
-                                                  : over_tiles_;
+    sources.vertex = has_vertex             ? sources.vertex_lines.text
+                     : context.pass->over() ? over_tiles_
+                                            : full_screen_;
     return sources;
 }
 

@@ -146,7 +146,7 @@ private:
                 add_generated(interface_glsl(context_, file_), place.line);
             return;
         }
-        if (shared && name == "predicate" && !context_.pass->lists.empty()) return add_predicate(place);
+        if (shared && name == "predicate" && context_.pass->lists()) return add_predicate(place);
         // A shader cannot reach outside its own folder and glsl/.
         const std::size_t slash = shared ? name.find('/') : std::string::npos;
         const bool is_plain = slash == std::string::npos ? is_plain_name(name)
@@ -166,7 +166,7 @@ private:
 
     /// What glsl/host/list_tiles.comp asks of each tile.
     void add_predicate(const Place& place) {
-        const TileListSpec& list = *context_.manifest->find_tile_list(context_.pass->lists);
+        const TileListSpec& list = *context_.manifest->tile_list_of(*context_.pass);
         if (!list.of) add_file(list.folder / list.predicate, place);
         std::string listed = list.name + "(tile)";
         if (list.of)
@@ -219,9 +219,9 @@ std::optional<ShaderInclude> parse_include(std::string_view line) {
 }
 
 fs::path shader_path(const PassSpec& pass, ShaderFile file, const fs::path& glsl_folder) {
-    if (!pass.lists.empty()) return glsl_folder / "host" / "list_tiles.comp";
+    if (pass.lists()) return glsl_folder / "host" / "list_tiles.comp";
     if (file == ShaderFile::main) return pass.folder / pass.shader;
-    return pass.vertex.empty() ? glsl_folder / "host" / "tiles.vert" : pass.folder / pass.vertex;
+    return pass.vertex() ? pass.folder / *pass.vertex() : glsl_folder / "host" / "tiles.vert";
 }
 
 ShaderSource assemble_shader(const ShaderContext& context, Diagnostics& diagnostics, ShaderFile file) {

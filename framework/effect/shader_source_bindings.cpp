@@ -85,7 +85,7 @@ PassBindings pass_bindings(const ShaderContext& context) {
     bindings.first_param_buffer = int(bindings.buffers.size());
     bindings.has_param_block = has_param_block(manifest);
     bindings.has_pass_block = pass.repeat.has_value();
-    bindings.has_tile_grid = (!pass.over.empty() && !pass.vertex.empty()) || !pass.lists.empty();
+    bindings.has_tile_grid = (pass.over() && pass.vertex()) || pass.lists();
     bindings.has_native_block = has_native_block(manifest);
     return bindings;
 }

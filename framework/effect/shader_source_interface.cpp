@@ -68,9 +68,9 @@ public:
           bindings_(pass_bindings(context)) {}
 
     std::string write(ShaderFile file) {
-        const std::string& lists = context_.pass->lists;
-        if (!lists.empty() && manifest_.find_tile_list(lists)->has_common_text())
-            return listing(*manifest_.find_tile_list(lists));
+        if (context_.pass->lists())
+            if (const TileListSpec& list = *manifest_.tile_list_of(*context_.pass); list.has_common_text())
+                return listing(list);
         defines();
         if (bindings_.has_param_block && has(kParamBinding)) params();
         shared_block(kFrameBinding, frame_block_glsl());
@@ -157,8 +157,7 @@ private:
 
     /// What glsl/host/list_tiles.comp and glsl/tile_runs.glsl go by.
     void tiles() {
-        const PassSpec& pass = *context_.pass;
-        const TileListSpec& list = *manifest_.find_tile_list(pass.lists.empty() ? pass.over : pass.lists);
+        const TileListSpec& list = *manifest_.tile_list_of(*context_.pass);
         const ParamSpec* side = manifest_.find_param(list.tile.param);
         text_ << "#define TILE_RUNS " << list.runs() << "\n#define TILE_ARGS " << list.args()
               << "\n#define TILE_SIDE ";

@@ -44,14 +44,8 @@ private:
     /// Paths: an effect and its modules may have files of one name.
     static std::vector<std::string> files_of(const PassSpec& pass) {
         std::vector<std::string> files;
-        for (const std::string& name : names_of(pass)) files.push_back((pass.folder / name).string());
+        for (const std::string& name : pass.shader_files()) files.push_back((pass.folder / name).string());
         return files;
-    }
-    static std::vector<std::string> names_of(const PassSpec& pass) {
-        std::vector<std::string> names;
-        for (const std::string& name : {pass.shader, pass.vertex})
-            if (!name.empty()) names.push_back(name);
-        return names;
     }
 
     void read_shader(const PassSpec& pass, const std::string& file) {
@@ -86,14 +80,14 @@ private:
     }
 
     void check_pass(const PassSpec& pass) {
-        if (names_of(pass).empty()) return;  // a clear, or the tiles of a texture: the host's text
-        const TileListSpec* tiles = manifest_.find_tile_list(pass.lists.empty() ? pass.over : pass.lists);
-        if (!pass.lists.empty() && !pass_has(pass, pass.lists))
-            diagnostics_.error(tiles->place, "tile list '" + pass.lists + "': its predicate '" + pass.shader +
-                                                 "' has no function 'bool " + pass.lists + "(ivec2 tile)'");
+        if (pass.shader_files().empty()) return;  // a clear, or the tiles of a texture: the host's text
+        const TileListSpec* tiles = manifest_.tile_list_of(pass);
+        if (pass.lists() && !pass_has(pass, tiles->name))
+            diagnostics_.error(tiles->place, "tile list '" + tiles->name + "': its predicate '" + pass.shader +
+                                                 "' has no function 'bool " + tiles->name + "(ivec2 tile)'");
         const auto unused = [&](const Place& place, const std::string& what) {
-            diagnostics_.error(place, "pass '" + pass.name + "': " + list_of_names(names_of(pass), "and") +
-                                          " " + (names_of(pass).size() > 1 ? "do" : "does") + " not use " +
+            diagnostics_.error(place, "pass '" + pass.name + "': " + list_of_names(pass.shader_files(), "and") +
+                                          " " + (pass.vertex() ? "do" : "does") + " not use " +
                                           what);
         };
         for (const ReadSpec& read : pass.reads)
@@ -251,10 +245,10 @@ private:
             add_subjects(pass.reads);
             add_subjects(pass.writes);
             if (pass.repeat) add(*pass.repeat);
-            if (pass.kind == PassKind::compute) add(pass.dispatch.tile);
-            if (!pass.instances) continue;
-            add(pass.instances->count);
-            if (pass.instances->grid) add(pass.instances->grid->tile);
+            if (pass.compute()) add(pass.compute()->dispatch.tile);
+            if (!pass.draw() || !pass.draw()->instances) continue;
+            add(pass.draw()->instances->count);
+            if (pass.draw()->instances->grid) add(pass.draw()->instances->grid->tile);
         }
         return names;
     }

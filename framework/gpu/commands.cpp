@@ -41,7 +41,7 @@ public:
         for (const ImageBinding& image : bindings_.images) {
             const TextureDesc& desc = image.texture->desc();
             gl_.BindImageTexture(unit(image.binding), image.texture->handle(), image.level,
-                                 desc.layers > 1 && image.layer < 0, std::max(0, image.layer),
+                                 desc.layers > 1 && !image.layer, image.layer.value_or(0),
                                  gl_access(image.access), gl_format(desc.format).internal);
         }
         bind_buffers(GL_UNIFORM_BUFFER, bindings_.uniforms);
@@ -115,11 +115,11 @@ private:
 
     void bind_textures() {
         for (const SampledTexture& sampled : bindings_.textures) {
-            const bool one_level = sampled.texture->desc().mips == 1 || sampled.level >= 0;
+            const bool one_level = sampled.texture->desc().mips == 1 || sampled.level;
             // With one level there is nothing that a view would hide.
-            const GLuint handle = sampled.texture->desc().mips == 1 || sampled.level < 0
+            const GLuint handle = sampled.texture->desc().mips == 1 || !sampled.level
                                       ? sampled.texture->handle()
-                                      : impl_.cache->level_view(sampled.texture->cached(), sampled.level);
+                                      : impl_.cache->level_view(sampled.texture->cached(), *sampled.level);
             gl_.BindTextureUnit(unit(sampled.binding), handle);
             gl_.BindSampler(unit(sampled.binding),
                             impl_.cache->sampler(sampled.filter, sampled.wrap, !one_level));
@@ -221,7 +221,7 @@ void check_feedback(const Program& program, std::span<const Target> targets, con
     for (const SampledTexture& sampled : bindings.textures) {
         for (const Target& target : targets) {
             if (sampled.texture != target.texture) continue;
-            if (sampled.level >= 0 && sampled.level != target.level) continue;
+            if (sampled.level && sampled.level != target.level) continue;
             fail(program,
                  fmt::format("texture '{}' is read and drawn to by the same pass", sampled.texture->label()));
         }

@@ -1,6 +1,7 @@
 // What a pass can do: draw over the whole target, draw instances, dispatch. Clearing is the textures' own.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -21,7 +22,7 @@ struct SampledTexture {
     int binding = 0;  ///< layout(binding = N) of the sampler
     Filter filter = Filter::nearest;
     Wrap wrap = Wrap::clamp;
-    int level = -1;  ///< the only level that is seen, as level 0; -1: all
+    std::optional<int> level{};  ///< the only level that is seen, as level 0; nullopt: all
 };
 
 /// One level and layer that a draw renders to.
@@ -36,7 +37,7 @@ struct ImageBinding {
     int binding = 0;  ///< layout(binding = N) of the image
     int level = 0;
     Access access = Access::read_write;
-    int layer = -1;  ///< of an array: the one that is seen, as a 2-D image; -1: all
+    std::optional<int> layer{};  ///< of an array: the one that is seen, as a 2-D image; nullopt: all
 };
 
 struct BufferBinding {

@@ -216,18 +216,19 @@ void Texture::clear_uint(std::uint32_t value) {
 }
 
 void Texture::clear_to(const std::array<double, 4>& value) {
-    clear_to(value, -1, -1);
+    clear_to(value, std::nullopt, std::nullopt);
 }
 
-void Texture::clear_to(const std::array<double, 4>& value, int level, int layer) {
-    assert(level < desc_.mips && layer < desc_.layers);
+void Texture::clear_to(const std::array<double, 4>& value, std::optional<int> level,
+                       std::optional<int> layer) {
+    assert(level.value_or(0) < desc_.mips && layer.value_or(0) < desc_.layers);
     handle_.context().make_current();
     const Context::Impl& impl = handle_.context().impl();
     const GladGLContext& gl = impl.gl;
     const std::array<std::uint32_t, 4> texel = clear_texel(value, desc_.format);
     const auto [internal, pixel, type] = gl_format(desc_.format);
-    const int first = level < 0 ? 0 : level;
-    const int last = level < 0 ? desc_.mips - 1 : level;
+    const int first = level.value_or(0);
+    const int last = level.value_or(desc_.mips - 1);
     // llvmpipe clears a texture on the caller's thread, and what is drawn to on all of its own.
     const bool draws = impl.info.software && desc_.layers == 1 && is_stored_alike(desc_, value);
     if (!draws) impl.wait_for_draws();
@@ -237,10 +238,10 @@ void Texture::clear_to(const std::array<double, 4>& value, int level, int layer)
             clear_drawn(gl, impl.cache->framebuffer({&target, 1}), desc_, texel);
             continue;
         }
-        if (layer < 0) {
+        if (!layer) {
             gl.ClearTexImage(handle(), i, pixel, type, texel.data());
         } else {
-            gl.ClearTexSubImage(handle(), i, 0, 0, layer, level_side(desc_.width, i),
+            gl.ClearTexSubImage(handle(), i, 0, 0, *layer, level_side(desc_.width, i),
                                 level_side(desc_.height, i), 1, pixel, type, texel.data());
         }
     }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,7 +47,7 @@ public:
     /// A value for each channel, as a shader would write it: rounded and kept in range for integers.
     void clear_to(const std::array<double, 4>& value);
     /// One level, and one layer of it; -1: every one.
-    void clear_to(const std::array<double, 4>& value, int level, int layer);
+    void clear_to(const std::array<double, 4>& value, std::optional<int> level, std::optional<int> layer);
     /// Fills levels 1.. from level 0 with GL's own box filter.
     void generate_mips();
 

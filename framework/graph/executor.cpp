@@ -143,7 +143,7 @@ Executor::BoundPass Executor::bind(int index) {
     for (const Read& read : pass.reads)
         bound.textures.push_back({texture(read.texture), read.binding, read.filter, read.wrap, read.level});
     for (const Target& target : pass.targets) {
-        bound.targets.push_back({texture(target.texture), target.level, target.layer});
+        bound.targets.push_back({texture(target.texture), target.level.value_or(0), target.layer.value_or(0)});
         bound.clear_targets.push_back(texture(target.texture));
         writes(target.texture);
     }
@@ -207,8 +207,8 @@ void Executor::run_program(const BoundPass& bound) {
                                  .images = bound.images,
                                  .uniforms = bound.uniforms,
                                  .storage = bound.storage};
-    if (pass.first_target_unit >= 0)
-        return gpu::dispatch_over(context_, *pass.program, bound.targets, pass.first_target_unit, bindings);
+    if (pass.first_target_unit)
+        return gpu::dispatch_over(context_, *pass.program, bound.targets, *pass.first_target_unit, bindings);
     switch (pass.kind) {
         case PassKind::draw: gpu::draw(context_, *pass.program, bound.targets, bindings, pass.blend); break;
         case PassKind::instances:
@@ -241,8 +241,8 @@ void Executor::run_pass(const BoundPass& bound) {
         }
         case PassKind::clear:
             for (std::size_t i = 0; i < bound.clear_targets.size(); ++i)
-                bound.clear_targets[i]->clear_to(pass.clear_value, bound.targets[i].level,
-                                                 bound.targets[i].layer);
+                bound.clear_targets[i]->clear_to(pass.clear_value, pass.targets[i].level,
+                                                 pass.targets[i].layer);
             break;
     }
     for (gpu::Texture* const texture : bound.mips) texture->generate_mips();

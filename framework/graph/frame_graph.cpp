@@ -73,8 +73,8 @@ BufferHistory FrameGraph::create_history_buffer(const std::string& name, const B
 
 bool FrameGraph::overwrites(const Pass& pass, const Target& target) const {
     const Texture& texture = textures_[std::size_t(target.texture.texture)];
-    const bool all_levels = texture.desc.mips == 1 || texture.options.auto_mips || target.level < 0;
-    const bool all_layers = texture.desc.layers == 1 || target.layer < 0;
+    const bool all_levels = texture.desc.mips == 1 || texture.options.auto_mips || !target.level;
+    const bool all_layers = texture.desc.layers == 1 || !target.layer;
     const bool all_texels =
         pass.kind == PassKind::clear || pass.kind == PassKind::copy ||
         ((pass.kind == PassKind::draw || (pass.kind == PassKind::instances && pass.instances.covers)) &&
@@ -83,17 +83,17 @@ bool FrameGraph::overwrites(const Pass& pass, const Target& target) const {
 }
 
 void FrameGraph::fill(const Pass& pass) {
-    const auto mark = [&](TextureHandle handle, int level, int layer) {
+    const auto mark = [&](TextureHandle handle, std::optional<int> level, std::optional<int> layer) {
         Texture& texture = textures_[std::size_t(handle.texture)];
-        if (texture.options.auto_mips) level = -1;
+        if (texture.options.auto_mips) level.reset();
         const int layers = texture.desc.layers;
         for (int i = 0; i < int(texture.filled.size()); ++i)
-            if ((level < 0 || level == i / layers) && (layer < 0 || layer == i % layers))
+            if (level.value_or(i / layers) == i / layers && layer.value_or(i % layers) == i % layers)
                 texture.filled[std::size_t(i)] = true;
     };
     for (const Target& target : pass.targets) mark(target.texture, target.level, target.layer);
     for (const ImageUse& image : pass.images)
-        if (image.access != gpu::Access::read) mark(image.texture, image.level, -1);
+        if (image.access != gpu::Access::read) mark(image.texture, image.level, std::nullopt);
 }
 
 Written FrameGraph::add_pass(Pass pass) {

@@ -40,15 +40,15 @@ struct Read {
     int binding = 0;  ///< of the sampler
     gpu::Filter filter = gpu::Filter::nearest;
     gpu::Wrap wrap = gpu::Wrap::clamp;
-    int level = -1;         ///< the only level that is seen, as level 0; -1: all
-    bool is_pixel = false;  ///< each pixel of the pass needs the texel at its own place alone
+    std::optional<int> level{};  ///< the only level that is seen, as level 0; nullopt: all
+    bool is_pixel = false;       ///< each pixel of the pass needs the texel at its own place alone
 };
 
-/// One level and layer that a draw renders to or a clear sets; -1 in a clear: every one.
+/// One level and layer that a draw renders to or a clear sets. In a clear and a copy nullopt is every one.
 struct Target {
     TextureHandle texture;
-    int level = 0;
-    int layer = 0;
+    std::optional<int> level = 0;
+    std::optional<int> layer = 0;
 };
 
 struct ImageUse {
@@ -109,12 +109,12 @@ struct Pass {
     std::array<double, 4> clear_value = {0, 0, 0, 0};
     Fusing fusing = Fusing::never;
     /// Unit of the first target, for a draw or for instances that are tiles, if their program is a compute
-    /// shader that stores the targets as images. -1: fragments draw them.
-    int first_target_unit = -1;
+    /// shader that stores the targets as images. nullopt: fragments draw them.
+    std::optional<int> first_target_unit{};
     /// Why a compute shader cannot do that; "" where it does, or where none was requested.
     std::string why_drawn{};
 
-    bool computes() const { return kind == PassKind::compute || first_target_unit >= 0; }
+    bool computes() const { return kind == PassKind::compute || first_target_unit; }
 };
 
 /// The results of a pass: new versions of the resources that it wrote. A texture that a pass writes in

@@ -12,18 +12,18 @@ int side(int full, int level) {
     return std::max(1, full >> level);
 }
 
-/// What a pass does with some levels and layers of a texture; -1: with every one.
+/// What a pass does with some levels and layers of a texture; nullopt: with every one.
 struct Use {
     enum class As { sampler, target, image };
     As as = As::sampler;
     int texture = -1;
-    int level = -1;
-    int layer = -1;
+    std::optional<int> level;
+    std::optional<int> layer;
     bool writes = false;
 };
 
-bool meet(int a, int b) {
-    return a < 0 || b < 0 || a == b;
+bool meet(std::optional<int> a, std::optional<int> b) {
+    return !a || !b || *a == *b;
 }
 
 class PassCheck {
@@ -126,21 +126,23 @@ private:
                 fail(fmt::format("has an empty uniform block at binding {}", block.binding));
     }
 
-    void check_range(const Texture& texture, int level, int layer) const {
-        if (level >= texture.desc.mips || level < -1)
+    void check_range(const Texture& texture, std::optional<int> of_level, std::optional<int> of_layer) const {
+        const int level = of_level.value_or(0), layer = of_layer.value_or(0);
+        if (level >= texture.desc.mips || level < 0)
             fail(fmt::format("uses level {} of '{}', which has {}", level, texture.name, texture.desc.mips));
-        if (layer >= texture.desc.layers || layer < -1)
+        if (layer >= texture.desc.layers || layer < 0)
             fail(
                 fmt::format("uses layer {} of '{}', which has {}", layer, texture.name, texture.desc.layers));
     }
 
-    /// `level`, `layer`: -1 for every one. `does` says what it does that needs content.
-    void check_filled(const Texture& texture, int level, int layer, std::string_view does) const {
+    /// `level`, `layer`: nullopt for every one. `does` says what it does that needs content.
+    void check_filled(const Texture& texture, std::optional<int> level, std::optional<int> layer,
+                      std::string_view does) const {
         const bool any =
             std::find(texture.filled.begin(), texture.filled.end(), true) != texture.filled.end();
         if (!any) fail(fmt::format("{} '{}' before any write", does, texture.name));
-        for (int i = level < 0 ? 0 : level; i < (level < 0 ? texture.desc.mips : level + 1); ++i)
-            for (int k = layer < 0 ? 0 : layer; k < (layer < 0 ? texture.desc.layers : layer + 1); ++k)
+        for (int i = level.value_or(0); i <= level.value_or(texture.desc.mips - 1); ++i)
+            for (int k = layer.value_or(0); k <= layer.value_or(texture.desc.layers - 1); ++k)
                 if (!texture.is_filled(i, k))
                     fail(fmt::format("{} '{}' before any write to its level {}, layer {}", does, texture.name,
                                      i, k));
@@ -162,7 +164,7 @@ private:
     void check_read(const Read& read) const {
         const Texture& texture = live(graph_, read.texture, user_);
         check_range(texture, read.level, 0);
-        check_filled(texture, read.level, -1, "reads");
+        check_filled(texture, read.level, std::nullopt, "reads");
         if (read.filter == gpu::Filter::linear && gpu::is_integer(texture.desc.format))
             fail(fmt::format("reads '{}' with a linear filter, but it holds integers", texture.name));
     }
@@ -171,15 +173,15 @@ private:
         const Texture& texture = live(graph_, target.texture, user_);
         check_writable(texture);
         check_range(texture, target.level, target.layer);
-        check_auto_mips(texture, target.level);
+        check_auto_mips(texture, target.level.value_or(0));
         if (pass_.kind == PassKind::clear || pass_.kind == PassKind::copy) return;
-        if (target.level < 0 || target.layer < 0)
+        if (!target.level || !target.layer)
             fail(fmt::format("draws to every level or layer of '{}' at once", texture.name));
         const Target& first = pass_.targets.front();
         const gpu::TextureDesc& desc = live(graph_, first.texture, user_).desc;
-        const int width = side(texture.desc.width, target.level);
-        const int height = side(texture.desc.height, target.level);
-        const int first_width = side(desc.width, first.level), first_height = side(desc.height, first.level);
+        const int level = *target.level, first_level = first.level.value_or(0);
+        const int width = side(texture.desc.width, level), height = side(texture.desc.height, level);
+        const int first_width = side(desc.width, first_level), first_height = side(desc.height, first_level);
         if (width != first_width || height != first_height)
             fail(fmt::format("writes targets of two sizes: '{}' is {}x{}, '{}' is {}x{}",
                              graph_.textures()[std::size_t(first.texture.texture)].name, first_width,
@@ -196,12 +198,11 @@ private:
     void check_image(const ImageUse& image) const {
         const Texture& texture = live(graph_, image.texture, user_);
         check_range(texture, image.level, 0);
-        if (image.level < 0) fail(fmt::format("uses every level of '{}' as one image", texture.name));
         if (image.access != gpu::Access::read) {
             check_writable(texture);
             check_auto_mips(texture, image.level);
         }
-        if (image.access != gpu::Access::write) check_filled(texture, image.level, -1, "reads");
+        if (image.access != gpu::Access::write) check_filled(texture, image.level, std::nullopt, "reads");
     }
 
     void check_buffer(const BufferUse& use) const {
@@ -218,12 +219,12 @@ private:
     std::vector<Use> texture_uses() const {
         std::vector<Use> uses;
         for (const Read& read : pass_.reads)
-            uses.push_back({Use::As::sampler, read.texture.texture, read.level, -1, false});
+            uses.push_back({Use::As::sampler, read.texture.texture, read.level, std::nullopt, false});
         for (const Target& target : pass_.targets)
             uses.push_back({Use::As::target, target.texture.texture, target.level, target.layer, true});
         for (const ImageUse& image : pass_.images)
             uses.push_back(
-                {Use::As::image, image.texture.texture, image.level, -1, image.access != gpu::Access::read});
+                {Use::As::image, image.texture.texture, image.level, std::nullopt, image.access != gpu::Access::read});
         return uses;
     }
 

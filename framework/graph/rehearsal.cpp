@@ -26,6 +26,11 @@ gpu::TextureDesc small(const gpu::TextureDesc& desc) {
     return result;
 }
 
+/// The last of `count` for one beyond it.
+std::optional<int> level_in(std::optional<int> level, int count) {
+    return level ? std::optional(std::min(*level, count - 1)) : std::nullopt;
+}
+
 /// Textures and buffers for one draw, which never move.
 class SmallMemory {
 public:
@@ -65,13 +70,13 @@ PassShape shape_of(const FrameGraph& graph, const CompiledGraph& compiled, const
     for (const Read& read : pass.reads) {
         const PassShape::Texels read_from = texels(read.texture);
         shape.reads.push_back(
-            {read_from, read.binding, read.filter, read.wrap, std::min(read.level, read_from.desc.mips - 1)});
+            {read_from, read.binding, read.filter, read.wrap, level_in(read.level, read_from.desc.mips)});
     }
     for (const Target& target : pass.targets) {
         const FrameGraph::Texture& drawn = texture(target.texture);
         const PassShape::Texels to = texels(target.texture);
-        shape.targets.push_back({to, std::min(target.level, to.desc.mips - 1),
-                                 std::min(target.layer, to.desc.layers - 1),
+        shape.targets.push_back({to, level_in(target.level, to.desc.mips).value_or(0),
+                                 level_in(target.layer, to.desc.layers).value_or(0),
                                  drawn.options.auto_mips && to.desc.mips > 1});
     }
     for (const ImageUse& use : pass.images)
@@ -109,8 +114,8 @@ void rehearse(gpu::Context& context, const gpu::Program& program, const PassShap
         targets.push_back({drawn, target.level, target.layer});
         if (target.fills_mips) with_mips.push_back(drawn);
     }
-    if (shape.first_target_unit >= 0)
-        gpu::dispatch_over(context, program, targets, shape.first_target_unit, bindings);
+    if (shape.first_target_unit)
+        gpu::dispatch_over(context, program, targets, *shape.first_target_unit, bindings);
     else if (shape.kind == PassKind::instances)
         gpu::draw_instances(context, program, targets, bindings, {shape.primitive, 1, nullptr}, shape.blend);
     else gpu::draw(context, program, targets, bindings, shape.blend);

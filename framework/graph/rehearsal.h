@@ -2,6 +2,7 @@
 // machine code then, by the formats and filters that are bound.
 #pragma once
 
+#include <optional>
 #include <cstddef>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct PassShape {
         int binding = 0;
         gpu::Filter filter = gpu::Filter::nearest;
         gpu::Wrap wrap = gpu::Wrap::clamp;
-        int level = -1;
+        std::optional<int> level{};
     };
     struct Drawn {
         Texels texture;
@@ -47,7 +48,7 @@ struct PassShape {
     std::vector<Memory> uniforms{};
     gpu::Blend blend = gpu::Blend::none;
     gpu::Primitive primitive = gpu::Primitive::quads;
-    int first_target_unit = -1;  ///< as Pass's
+    std::optional<int> first_target_unit{};  ///< as Pass's
 };
 
 /// `compiled`: the graph's memory.

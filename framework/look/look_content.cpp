@@ -52,11 +52,11 @@ std::set<fs::path> files_of(const EffectManifest& manifest, const fs::path& glsl
     std::set<fs::path> files{manifest.document};
     for (const ModuleSpec& part : manifest.modules) files.insert(part.folder / "module.json");
     for (const PassSpec& pass : manifest.passes) {
-        for (const std::string& shader : {pass.shader, pass.vertex})
-            if (!shader.empty()) gather_shader(manifest, pass.folder / shader, glsl_folder, files);
-        if (!pass.lists.empty())
+        for (const std::string& shader : pass.shader_files())
+            gather_shader(manifest, pass.folder / shader, glsl_folder, files);
+        if (pass.lists())
             gather_shader(manifest, shader_path(pass, ShaderFile::main, glsl_folder), glsl_folder, files);
-        if (!pass.over.empty())
+        if (pass.over())
             gather_shader(manifest, shader_path(pass, ShaderFile::vertex, glsl_folder), glsl_folder, files);
     }
     if (manifest.native)

@@ -69,9 +69,10 @@ public:
             if (list.on.empty()) add(count(list.tile));
             else add_grid(manifest.find_texture(list.on)->grid, count(list.tile));
         for (const PassSpec& pass : manifest.passes)
-            if (pass.kind == PassKind::compute && pass.dispatch.kind == DispatchSpec::Kind::tile &&
-                pass.dispatch.over.empty() && pass.lists.empty())
-                add(count(pass.dispatch.tile));
+            if (const ComputeSpec* compute = pass.compute();
+                compute && compute->dispatch.kind == DispatchSpec::Kind::tile &&
+                compute->dispatch.over.empty() && !compute->lists)
+                add(count(compute->dispatch.tile));
         return px_;
     }
 

@@ -212,8 +212,9 @@ void GraphBuilder::require_written(const StepBuild& build, const InputSpec& inpu
                                        texture.name + "', which no pass writes with these parameters");
 }
 
-int GraphBuilder::input_level(graph::TextureHandle handle) const {
-    return graph_.textures()[std::size_t(handle.texture)].desc.mips > 1 ? 0 : -1;
+std::optional<int> GraphBuilder::input_level(graph::TextureHandle handle) const {
+    return graph_.textures()[std::size_t(handle.texture)].desc.mips > 1 ? std::optional(0)
+                                                                      : std::nullopt;
 }
 
 /// Whether somebody may look at texels that no pass has drawn. As floats, their bits are not a number, so

@@ -77,7 +77,7 @@ private:
     void declare(StepBuild& build);
     void require_written(const StepBuild& build, const InputSpec& input, graph::TextureHandle handle) const;
     /// An input is level 0 of a texture that has more.
-    int input_level(graph::TextureHandle handle) const;
+    std::optional<int> input_level(graph::TextureHandle handle) const;
     bool shows_undrawn(const StepBuild& build, const TextureSpec& spec) const;
     void declare_texture(StepBuild& build, const TextureSpec& spec);
     void declare_buffer(StepBuild& build, const BufferSpec& spec);

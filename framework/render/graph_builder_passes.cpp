@@ -23,8 +23,8 @@ gpu::Access gpu_access(AccessSpec::Kind kind) {
 }
 
 std::array<float, 4> size_of(const gpu::TextureDesc& desc, int level) {
-    const int width = std::max(1, desc.width >> std::max(0, level));
-    const int height = std::max(1, desc.height >> std::max(0, level));
+    const int width = std::max(1, desc.width >> level);
+    const int height = std::max(1, desc.height >> level);
     return {float(width), float(height), 1.0f / float(width), 1.0f / float(height)};
 }
 
@@ -55,9 +55,11 @@ void bind_reads(const StepBuild& build, const PassSpec& spec, const PassBindings
         if (handle.version == 0 && !texture.options.clear) unwritten(build, spec, read.name);
         const bool is_input = !read.previous && build.inputs.contains(read.name);
         // An earlier step's texture may have levels, which an input has not.
-        const int level = read.level ? read.level->in_turn(turn) : is_input && texture.desc.mips > 1 ? 0 : -1;
+        std::optional<int> level;
+        if (read.level) level = read.level->in_turn(turn);
+        else if (is_input && texture.desc.mips > 1) level = 0;
         pass.reads.push_back({handle, int(pass.reads.size()), read.filter, read.wrap, level, read.is_pixel});
-        const auto size = size_of(texture.desc, level);
+        const auto size = size_of(texture.desc, level.value_or(0));
         sizes.add(std::span<const float>(size));
     }
     for (const WriteSpec& write : bindings.sized_writes) {
@@ -92,8 +94,8 @@ void bind_memory(const StepBuild& build, const PassBindings& bindings, graph::Pa
 void GraphBuilder::add_pass(StepBuild& build, const PassSpec& spec) {
     const bool is_native = build.manifest().native.has_value();
     if (is_native && !frame_.native_enabled(build.index, spec.name)) return;
-    if (spec.kind == PassKind::clear) return add_clear(build, spec);
-    if (spec.kind == PassKind::copy) return add_copy_pass(build, spec);
+    if (spec.clear()) return add_clear(build, spec);
+    if (spec.copies()) return add_copy_pass(build, spec);
     int turns = spec.repeat ? count_value(*spec.repeat, build.params) : 1;
     if (is_native) turns = frame_.native_turns(build.index, spec.name, turns);
     for (int turn = 0; turn < turns; ++turn) add_turn(build, spec, turn, turns);
@@ -103,8 +105,8 @@ namespace {
 
 /// By the manifest; what the shader's text forbids is found later.
 graph::Fusing fusing_of(const PassSpec& spec, const graph::Pass& pass) {
-    const bool is_plain = pass.kind == graph::PassKind::draw && !spec.has_vertex_shader() &&
-                          spec.blend == gpu::Blend::none && pass.images.empty() && !spec.repeat &&
+    const bool is_plain = pass.kind == graph::PassKind::draw && spec.fills_screen() &&
+                          pass.blend == gpu::Blend::none && pass.images.empty() && !spec.repeat &&
                           std::ranges::all_of(pass.buffers, [](const graph::BufferUse& use) {
                               return use.access == gpu::Access::read;
                           });
@@ -119,7 +121,7 @@ void GraphBuilder::add_clear(StepBuild& build, const PassSpec& spec) {
     graph::Pass pass;
     pass.name = build.step.name + "." + spec.name;
     pass.kind = graph::PassKind::clear;
-    pass.clear_value = four_values(spec.clear_value);
+    pass.clear_value = four_values(spec.clear()->value);
     const std::vector<WriteSpec> writes = present_writes(spec, build.params, build.present);
     for (const WriteSpec& write : writes)
         pass.targets.push_back({build.textures.at(write.name), write.level.number, write.layer.number});
@@ -143,20 +145,12 @@ void GraphBuilder::add_copy_pass(StepBuild& build, const PassSpec& spec) {
     pass.targets.push_back({to});
     if (a.format == b.format && a.width == b.width && a.height == b.height && a.layers == 1) {
         pass.kind = graph::PassKind::copy;
-        if (b.mips > 1) pass.reads.front().level = pass.targets.front().level = -1;
+        if (b.mips > 1) pass.reads.front().level = pass.targets.front().level = std::nullopt;
     } else {
         programs_.give_host(graph_, pass, "copy.frag", copy_defines(a.format));
     }
     build.textures[name] = graph_.add_pass(std::move(pass)).targets.front();
 }
-
-namespace {
-
-bool draws_with_tiles_vert(const PassSpec& spec) {
-    return !spec.over.empty() && spec.vertex.empty();
-}
-
-}  // namespace
 
 void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, int turns) {
     const EffectManifest& manifest = build.manifest();
@@ -169,9 +163,8 @@ void GraphBuilder::add_turn(StepBuild& build, const PassSpec& spec, int turn, in
     const PassBindings bindings = pass_bindings(shader);
     graph::Pass pass;
     pass.name = build.prefix() + spec.name + (turns > 1 ? "[" + std::to_string(turn) + "]" : "");
-    pass.blend = spec.blend;
     bind_reads(build, spec, bindings, turn, tile_grid_size(build, spec, bindings), graph_, pass);
-    if (draws_with_tiles_vert(spec))
+    if (spec.over() && !spec.vertex())
         pass.uniforms.push_back({kTilesBinding, tiles_block(build, spec, bindings)});
     bind_memory(build, bindings, pass);
     if (bindings.has_param_block) bind_block(build, BlockKind::param, pass);
@@ -205,10 +198,10 @@ std::array<float, 2> GraphBuilder::listed_size(const StepBuild& build, const Til
 /// How many texels of the tile list's grid there are: on a target of another scale as many as it covers.
 std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const PassSpec& spec,
                                                   const PassBindings& bindings) const {
-    if (spec.over.empty() && spec.lists.empty()) return {};
-    const TileListSpec& list = *build.manifest().find_tile_list(spec.lists.empty() ? spec.over : spec.lists);
-    const std::string& on = spec.lists.empty() ? bindings.writes.front().name : list.on;
-    const int level = spec.lists.empty() ? bindings.writes.front().level.number : 0;
+    if (!spec.over() && !spec.lists()) return {};
+    const TileListSpec& list = *build.manifest().tile_list_of(spec);
+    const std::string& on = spec.lists() ? list.on : bindings.writes.front().name;
+    const int level = spec.lists() ? 0 : bindings.writes.front().level.number;
     float width = float(width_), height = float(height_);
     if (!on.empty()) {
         const auto& desc = graph_.textures()[std::size_t(build.textures.at(on).texture)].desc;
@@ -224,7 +217,7 @@ std::array<float, 4> GraphBuilder::tile_grid_size(const StepBuild& build, const 
 std::vector<std::byte> GraphBuilder::tiles_block(const StepBuild& build, const PassSpec& spec,
                                                  const PassBindings& bindings) const {
     const std::array<float, 4> grid = tile_grid_size(build, spec, bindings);
-    const TileListSpec& list = *build.manifest().find_tile_list(spec.over);
+    const TileListSpec& list = *build.manifest().tile_list_of(spec);
     const int side = count_value(list.tile, build.params);
     Std140Writer block;
     block.add(std::span<const float>(grid));
@@ -254,9 +247,9 @@ void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph:
         const auto [width, height] = grid_size(grid, build.params, width_, height_);
         return width * height;
     };
-    if (spec.kind == PassKind::compute) {
+    if (const ComputeSpec* compute = spec.compute()) {
         pass.kind = graph::PassKind::compute;
-        const DispatchSpec& dispatch = spec.dispatch;
+        const DispatchSpec& dispatch = compute->dispatch;
         if (dispatch.kind == DispatchSpec::Kind::indirect) {
             pass.groups.indirect = build.buffers.at(dispatch.indirect);
         } else if (dispatch.kind == DispatchSpec::Kind::groups) {
@@ -273,9 +266,12 @@ void GraphBuilder::set_kind(const StepBuild& build, const PassSpec& spec, graph:
             std::tie(width, height) = grid_size(tiles, build.params, width, height);
             pass.groups.count = {width, height, 1};
         }
-    } else if (spec.instances) {
+        return;
+    }
+    pass.blend = spec.draw()->blend;
+    if (spec.draw()->instances) {
         pass.kind = graph::PassKind::instances;
-        const InstanceSpec& instances = *spec.instances;
+        const InstanceSpec& instances = *spec.draw()->instances;
         pass.instances.primitive = instances.primitive == InstanceSpec::Primitive::points
                                        ? gpu::Primitive::points
                                        : gpu::Primitive::quads;

@@ -140,7 +140,7 @@ int PassPrograms::count_blocks(const graph::FrameGraph& graph, int pass) {
 struct PassPrograms::Form {
     std::shared_ptr<const ProgramSources> sources;
     std::vector<graph::ImageUse> images;
-    int first_target_unit = -1;
+    std::optional<int> first_target_unit{};
 };
 
 /// A pass's texts, and what is wrong with them.
@@ -198,7 +198,7 @@ PassPrograms::Form PassPrograms::with_loads(const graph::FrameGraph& graph, cons
             formats[read.binding] = graph.textures()[std::size_t(read.texture.texture)].desc.format;
         for (const ImageLoad& load : load_as_images(sources.main, formats, first_unit, units)) {
             const auto read = std::ranges::find(pass.reads, load.sampler, &graph::Read::binding);
-            form.images.push_back({read->texture, load.unit, gpu::Access::read, std::max(0, read->level)});
+            form.images.push_back({read->texture, load.unit, gpu::Access::read, read->level.value_or(0)});
         }
     }
     form.sources = std::make_shared<const ProgramSources>(std::move(sources));
@@ -210,8 +210,8 @@ namespace {
 /// By the manifest: "blends"; what the shader's text forbids is found by itself.
 std::string fault_of_computing(const graph::Pass& pass, const PassSpec* spec) {
     if (pass.blend != gpu::Blend::none) return "blends";
-    if (spec && !spec->vertex.empty()) return "has a vertex shader";
-    if (pass.kind == graph::PassKind::instances && (!spec || spec->over.empty())) return "draws instances";
+    if (spec && spec->vertex()) return "has a vertex shader";
+    if (pass.kind == graph::PassKind::instances && (!spec || !spec->over())) return "draws instances";
     return "";
 }
 
@@ -231,10 +231,10 @@ std::optional<ProgramSources> PassPrograms::in_compute(const graph::FrameGraph& 
     shape.first_target_unit = int(pass.images.size());
     for (const graph::Target& target : pass.targets) shape.targets.push_back(desc_of(target.texture).format);
     shape.has_levels = std::ranges::any_of(pass.reads, [&](const graph::Read& read) {
-        return read.level < 0 && desc_of(read.texture).mips > 1;
+        return !read.level && desc_of(read.texture).mips > 1;
     });
     if (pass.kind == graph::PassKind::instances)
-        shape.tile_runs = shader->manifest->find_tile_list(shader->pass->over)->runs();
+        shape.tile_runs = shader->manifest->tile_list_of(*shader->pass)->runs();
     return in_compute_form(sources, shape, why_not);
 }
 

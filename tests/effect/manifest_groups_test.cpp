@@ -62,11 +62,14 @@ Lines lines_of_manifest(const EffectManifest& manifest) {
         lines.push_back(t.name + " " + (t.of ? t.of->text() : t.predicate + " " + t.on) +
                         text_of({double(t.tile.number)}) + conditions_of(t.when) + " " + t.doc);
     for (const PassSpec& p : manifest.passes) {
-        std::string line =
-            p.name + " " + p.shader + " " + p.vertex + " over " + p.over + " lists " + p.lists +
-            text_of({double(p.kind), double(p.blend), double(p.max_iterations), double(p.dispatch.kind),
-                     double(p.dispatch.tile.number), double(p.dispatch.groups[0])}) +
-            p.dispatch.over + conditions_of(p.when);
+        std::string line = p.name + " " + list_of_names(p.shader_files()) +
+                           text_of({double(p.work.index()), double(p.max_iterations)}) + conditions_of(p.when);
+        if (p.draw()) line += " over " + p.draw()->over.value_or("") + text_of({double(p.draw()->blend)});
+        if (p.compute()) {
+            const DispatchSpec& d = p.compute()->dispatch;
+            line += " lists " + p.compute()->lists.value_or("") +
+                    text_of({double(d.kind), double(d.tile.number), double(d.groups[0])}) + d.over;
+        }
         for (const ReadSpec& r : p.reads)
             line += " reads " + r.glsl_name() + text_of({double(r.filter)}) +
                     (r.level ? turn_text(*r.level) : "") + conditions_of(r.when);

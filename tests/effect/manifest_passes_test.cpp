@@ -56,7 +56,7 @@ TEST(ManifestPasses, KeepADrawWithLevelsAndTurns) {
     const Made pass(R"({"name": "down", "shader": "b.frag", "repeat": 3, "max_iterations": 64,
         "reads": [{"pyramid": {"filter": "linear", "outside": "weight_zero", "level": "pass.index"}}, {"chain": {"level": 2}}],
         "writes": [{"pyramid": {"level": "pass.index + 1"}}]})");
-    EXPECT_EQ(pass->kind, PassKind::draw);
+    EXPECT_TRUE(pass->draw());
     EXPECT_EQ(pass->repeat, (CountSpec{3, ""}));
     EXPECT_EQ(pass->max_iterations, 64);
     EXPECT_EQ(pass->reads[0].filter, gpu::Filter::linear);
@@ -79,48 +79,48 @@ TEST(ManifestPasses, KeepADrawOfInstances) {
     const Made counted(
         R"({"name": "dots", "shader": "b.frag", "vertex": "d.vert", "writes": ["small"], "blend": "add",
         "instances": {"of": "points", "count": "turns", "per": {"scale": 0.25}}, "buffers": {"list": "read"}})");
-    EXPECT_EQ(counted->vertex, "d.vert");
-    EXPECT_EQ(counted->blend, gpu::Blend::add);
-    ASSERT_TRUE(counted->instances.has_value());
-    EXPECT_EQ(counted->instances->primitive, InstanceSpec::Primitive::points);
-    EXPECT_EQ(counted->instances->count.param, "turns");
-    EXPECT_EQ(counted->instances->grid->scale, 0.25);
+    EXPECT_EQ(counted->draw()->vertex, "d.vert");
+    EXPECT_EQ(counted->draw()->blend, gpu::Blend::add);
+    ASSERT_TRUE(counted->draw()->instances.has_value());
+    EXPECT_EQ(counted->draw()->instances->primitive, InstanceSpec::Primitive::points);
+    EXPECT_EQ(counted->draw()->instances->count.param, "turns");
+    EXPECT_EQ(counted->draw()->instances->grid->scale, 0.25);
     const Made indirect(
         R"({"name": "dots", "shader": "b.frag", "vertex": "d.vert", "writes": ["small"], "blend": "max",
         "instances": {"of": "quads", "indirect": "args"}})");
-    EXPECT_EQ(indirect->blend, gpu::Blend::max);
-    EXPECT_EQ(indirect->instances->indirect, "args");
-    EXPECT_EQ(indirect->instances->primitive, InstanceSpec::Primitive::quads);
+    EXPECT_EQ(indirect->draw()->blend, gpu::Blend::max);
+    EXPECT_EQ(indirect->draw()->instances->indirect, "args");
+    EXPECT_EQ(indirect->draw()->instances->primitive, InstanceSpec::Primitive::quads);
 }
 
 TEST(ManifestPasses, KeepComputeAndClear) {
     const Made tiles(
         R"({"name": "c", "kind": "compute", "shader": "c.comp", "images": {"ids": "atomic", "pyramid": "read",
         "stack": "write"}, "buffers": {"list": "read"}, "dispatch": {"tile": 16, "over": "small"}})");
-    EXPECT_EQ(tiles->kind, PassKind::compute);
+    ASSERT_TRUE(tiles->compute());
     ASSERT_EQ(tiles->images.size(), 3U);
     EXPECT_EQ(tiles->images[0].kind, AccessSpec::Kind::atomic);
     EXPECT_EQ(tiles->images[1].kind, AccessSpec::Kind::read);
     EXPECT_EQ(tiles->images[2].kind, AccessSpec::Kind::write);
-    EXPECT_EQ(tiles->dispatch.kind, DispatchSpec::Kind::tile);
-    EXPECT_EQ(tiles->dispatch.tile.number, 16);
-    EXPECT_EQ(tiles->dispatch.over, "small");
+    EXPECT_EQ(tiles->compute()->dispatch.kind, DispatchSpec::Kind::tile);
+    EXPECT_EQ(tiles->compute()->dispatch.tile.number, 16);
+    EXPECT_EQ(tiles->compute()->dispatch.over, "small");
     const Made groups(R"({"name": "c", "kind": "compute", "shader": "c.comp", "buffers": {"sums": "write"},
         "dispatch": {"groups": [1, 2, 3]}})");
-    EXPECT_EQ(groups->dispatch.kind, DispatchSpec::Kind::groups);
-    EXPECT_EQ(groups->dispatch.groups[2], 3);
+    EXPECT_EQ(groups->compute()->dispatch.kind, DispatchSpec::Kind::groups);
+    EXPECT_EQ(groups->compute()->dispatch.groups[2], 3);
     const Made indirect(R"({"name": "c", "kind": "compute", "shader": "c.comp", "buffers": {"sums": "write"},
         "dispatch": {"indirect": "args"}})");
-    EXPECT_EQ(indirect->dispatch.indirect, "args");
+    EXPECT_EQ(indirect->compute()->dispatch.indirect, "args");
     const Made clear(
         R"({"name": "c", "kind": "clear", "writes": ["small", "color"], "value": [1, 0.5, 0, 2]})");
-    EXPECT_EQ(clear->kind, PassKind::clear);
-    EXPECT_EQ(clear->clear_value, (std::vector<double>{1, 0.5, 0, 2}));
+    ASSERT_TRUE(clear->clear());
+    EXPECT_EQ(clear->clear()->value, (std::vector<double>{1, 0.5, 0, 2}));
 }
 
 TEST(ManifestPasses, KeepACopy) {
     const Made copy(R"({"name": "c", "kind": "copy", "from": "color", "to": "color"})");
-    EXPECT_EQ(copy->kind, PassKind::copy);
+    EXPECT_TRUE(copy->copies());
     EXPECT_FALSE(copy->runs_shader());
     ASSERT_EQ(copy->reads.size(), 1U);
     ASSERT_EQ(copy->writes.size(), 1U);

@@ -45,12 +45,12 @@ TEST(TileLists, BecomeBuffersAndAPassBeforeTheFirstOverThem) {
     ASSERT_EQ(manifest.passes.size(), 6U);
     const PassSpec& list = manifest.passes[3];
     EXPECT_EQ(list.name, "marked");
-    EXPECT_EQ(list.lists, "marked");
-    EXPECT_EQ(list.kind, PassKind::compute);
+    ASSERT_TRUE(list.compute());
+    EXPECT_EQ(list.compute()->lists, "marked");
     ASSERT_EQ(list.reads.size(), 1U);
     EXPECT_EQ(list.reads[0].name, "marks");
-    EXPECT_EQ(list.dispatch.over, "marks");
-    EXPECT_EQ(list.dispatch.tile.number, 16);
+    EXPECT_EQ(list.compute()->dispatch.over, "marks");
+    EXPECT_EQ(list.compute()->dispatch.tile.number, 16);
     const BufferSpec* runs = manifest.find_buffer("marked_runs");
     ASSERT_NE(runs, nullptr);
     EXPECT_EQ(runs->element, "uvec4");
@@ -61,7 +61,7 @@ TEST(TileLists, BecomeBuffersAndAPassBeforeTheFirstOverThem) {
     EXPECT_EQ(args->clear, (std::vector<double>{4, 0, 0, 0}));
     for (const std::size_t i : {4U, 5U}) {
         const PassSpec& over = manifest.passes[i];
-        EXPECT_EQ(over.instances->indirect, "marked_args") << over.name;
+        EXPECT_EQ(over.draw()->instances->indirect, "marked_args") << over.name;
         EXPECT_EQ(over.buffers.at(0).name, "marked_runs") << over.name;
         EXPECT_EQ(over.when.back().subject, "flag")
             << "where the texture is absent, so is what depends on it";
@@ -203,8 +203,8 @@ TEST(TileLists, LieOnTexturesByTheirScale) {
         if (manifest) {
             // 16 texels of half the size are 32 px.
             EXPECT_EQ(manifest->find_buffer("far_runs")->grid->tile.number, 32);
-            EXPECT_EQ(manifest->passes[3].dispatch.over, on);
-            EXPECT_EQ(manifest->passes[3].dispatch.tile.number, 256);
+            EXPECT_EQ(manifest->passes[3].compute()->dispatch.over, on);
+            EXPECT_EQ(manifest->passes[3].compute()->dispatch.tile.number, 256);
         }
         Lines texts;
         for (const Diagnostic& fault : diagnostics.all()) texts.push_back(fault.message);

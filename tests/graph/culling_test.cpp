@@ -81,7 +81,7 @@ TEST(Culling, KeepsAWriteThatWasReadBeforeItWasReplaced) {
 TEST(Culling, KeepsWhatAPartialWriteLeavesStanding) {
     const auto running = [](auto second, const gpu::TextureDesc& desc = kFull) {
         Graph graph;
-        graph.keep(second(graph, graph.clear("first", {graph.fresh("a", desc), -1, -1})));
+        graph.keep(second(graph, graph.clear("first", {graph.fresh("a", desc), std::nullopt, std::nullopt})));
         return graph.running();
     };
     const Names both = {"first", "second"}, second_only = {"second"};
@@ -105,7 +105,7 @@ TEST(Culling, KeepsWhatAPartialWriteLeavesStanding) {
               both);
     EXPECT_EQ(running(
                   [](Graph& g, TextureHandle a) {
-                      return g.clear("second", {a, -1, -1});
+                      return g.clear("second", {a, std::nullopt, std::nullopt});
                   },
                   kPyramid),
               second_only);

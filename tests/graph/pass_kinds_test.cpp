@@ -288,7 +288,7 @@ TEST_P(PassKindsOn, CopiesEveryLevel) {
     copy.targets = {{graph.fresh("copied", desc)}};
     EXPECT_EQ(fault_of([&] { (void)graph.add_pass(copy); }),
               "pass 'copy' copies 'source' to level 0 of 'copied' alone; copies take every level");
-    copy.targets.front().level = -1;
+    copy.targets.front().level = std::nullopt;
     const TextureHandle out = graph.add_pass(copy).targets[0];
     graph.keep(out);
     Executor executor(context(), std::move(graph));
@@ -367,7 +367,7 @@ TEST_P(PassKindsOn, ClearsOneLevelOrEveryOne) {
     desc.mips = 2;
     desc.layers = 2;
     Pass all = pass_named("all", PassKind::clear);
-    all.targets = {{graph.fresh("array", desc), -1, -1}};
+    all.targets = {{graph.fresh("array", desc), std::nullopt, std::nullopt}};
     all.clear_value = {-3, 0, 0, 0};
     Pass one = pass_named("one", PassKind::clear);
     one.targets = {{graph.add_pass(all).targets[0], 1, 0}};

@@ -17,6 +17,13 @@ const T* find_named(const std::vector<T>& list, const std::string& name) {
 
 }  // namespace
 
+std::vector<std::string> PassSpec::shader_files() const {
+    std::vector<std::string> files;
+    if (!shader.empty()) files.push_back(shader);
+    if (vertex()) files.push_back(*vertex());
+    return files;
+}
+
 std::string InputSpec::image_role() const {
     return layer < 0 ? role : layer_role(layer, role);
 }
@@ -42,8 +49,9 @@ const TextureSpec* EffectManifest::find_texture(const std::string& name) const {
 const BufferSpec* EffectManifest::find_buffer(const std::string& name) const {
     return find_named(buffers, name);
 }
-const TileListSpec* EffectManifest::find_tile_list(const std::string& name) const {
-    return find_named(tiles, name);
+const TileListSpec* EffectManifest::tile_list_of(const PassSpec& pass) const {
+    const std::string* const name = pass.lists() ? pass.lists() : pass.over();
+    return name ? find_named(tiles, *name) : nullptr;
 }
 const PresetSpec* EffectManifest::find_preset(const std::string& name) const {
     return find_named(presets, name);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "framework/base/diagnostics.h"
@@ -221,36 +222,59 @@ struct TileListSpec {
     std::string args() const { return name + "_args"; }  ///< buffer: {vertices, instances, first, base}
 };
 
-enum class PassKind { draw, compute, clear, copy };
+/// A draw over the full screen, over tiles, or of instances.
+struct DrawSpec {
+    std::optional<std::string> vertex;  ///< its vertex shader, a file; nullopt: the host's
+    std::optional<std::string> over;    ///< the tile list that it is confined to
+    std::optional<InstanceSpec> instances;
+    gpu::Blend blend = gpu::Blend::none;
+};
+
+struct ComputeSpec {
+    DispatchSpec dispatch;
+    std::optional<std::string> lists;  ///< the tile list that the host's own pass fills
+};
+
+/// Sets what it writes.
+struct ClearSpec {
+    std::vector<double> value;  ///< 1 or 4 numbers
+};
+
+/// Copies the only texture that it reads to the only one that it writes.
+struct CopySpec {};
 
 struct PassSpec {
     std::string name;
-    PassKind kind = PassKind::draw;
+    std::variant<DrawSpec, ComputeSpec, ClearSpec, CopySpec> work;
     std::filesystem::path folder;  ///< of its shaders: the effect's, or its module's
     std::string module;            ///< that declares it; "" for the effect itself
-    std::string shader;            ///< file in that folder; "" for a clear and a copy
-    std::string vertex;            ///< draw of instances: its vertex shader; "" for the full screen
-    std::string over;              ///< the tile list that the draw is confined to; "" for none
-    std::string lists;             ///< the host's own pass that fills this tile list; "" for every other
+    std::string shader;            ///< file in that folder; "" where the host has all of the text, or none runs
     std::vector<ReadSpec> reads;
-    std::vector<WriteSpec>
-        writes;  ///< textures and outputs, in the order of the attachments; clear: what it sets
+    std::vector<WriteSpec> writes;  ///< textures and outputs, in the order of the attachments
     std::vector<AccessSpec> images;
     std::vector<AccessSpec> buffers;
     std::map<std::string, std::string> defines;
     std::vector<WhenSpec> when;       ///< all must hold
     std::optional<CountSpec> repeat;  ///< the shader reads its turn as pass.index, 0 .. pass.count - 1
-    std::optional<InstanceSpec> instances;
-    DispatchSpec dispatch;  ///< compute
-    gpu::Blend blend = gpu::Blend::none;
-    std::vector<double> clear_value;  ///< clear: 1 or 4 numbers
     int max_iterations = 0;      ///< upper bound of the loop iterations of one invocation; 0: not declared
     bool infers_reads = false;   ///< the manifest leaves `reads` to the shaders' text
     bool infers_writes = false;  ///< likewise `writes`
     Place place;
-    bool runs_shader() const { return kind == PassKind::draw || kind == PassKind::compute; }
-    /// Whether a vertex shader, the pass's own or the host's over tiles, places quads or points.
-    bool has_vertex_shader() const { return !vertex.empty() || !over.empty(); }
+    const DrawSpec* draw() const { return std::get_if<DrawSpec>(&work); }
+    DrawSpec* draw() { return std::get_if<DrawSpec>(&work); }
+    const ComputeSpec* compute() const { return std::get_if<ComputeSpec>(&work); }
+    const ClearSpec* clear() const { return std::get_if<ClearSpec>(&work); }
+    bool copies() const { return std::holds_alternative<CopySpec>(work); }
+    bool runs_shader() const { return draw() || compute(); }
+    /// Whether it draws over the full screen, where a pixel is a texel: no vertex shader, its own or the
+    /// host's over tiles, places quads or points.
+    bool fills_screen() const { return draw() && !vertex() && !over(); }
+    /// nullptr for none.
+    const std::string* vertex() const { return draw() && draw()->vertex ? &*draw()->vertex : nullptr; }
+    const std::string* over() const { return draw() && draw()->over ? &*draw()->over : nullptr; }
+    const std::string* lists() const { return compute() && compute()->lists ? &*compute()->lists : nullptr; }
+    /// The author's files that it runs.
+    std::vector<std::string> shader_files() const;
 };
 
 /// A value or an array that the effect's native code fills before each frame.
@@ -361,7 +385,8 @@ struct EffectManifest {
     const ParamSpec* find_param(const std::string& name) const;
     const TextureSpec* find_texture(const std::string& name) const;
     const BufferSpec* find_buffer(const std::string& name) const;
-    const TileListSpec* find_tile_list(const std::string& name) const;
+    /// The one that the pass fills or is confined to; nullptr for none.
+    const TileListSpec* tile_list_of(const PassSpec& pass) const;
     bool has_history() const;  ///< of any texture, buffer or input
     const PresetSpec* find_preset(const std::string& name) const;
     std::vector<std::string> param_names() const;

@@ -26,8 +26,8 @@ public:
             if (is_used(list)) add_buffers(list);
         std::vector<PassSpec> passes;
         for (PassSpec& pass : manifest_.passes) {
-            if (const TileListSpec* list = manifest_.find_tile_list(pass.over)) {
-                const auto fills = [&](const PassSpec& other) { return other.lists == list->name; };
+            if (const TileListSpec* list = manifest_.tile_list_of(pass)) {
+                const auto fills = [&](const PassSpec& other) { return other.lists() && *other.lists() == list->name; };
                 if (std::none_of(passes.begin(), passes.end(), fills)) passes.push_back(listing_pass(*list));
                 confine(pass, *list);
             }
@@ -39,7 +39,7 @@ public:
 private:
     bool is_used(const TileListSpec& list) const {
         return std::any_of(manifest_.passes.begin(), manifest_.passes.end(),
-                           [&](const PassSpec& pass) { return pass.over == list.name; });
+                           [&](const PassSpec& pass) { return manifest_.tile_list_of(pass) == &list; });
     }
 
     void add_buffers(const TileListSpec& list) {
@@ -78,8 +78,6 @@ private:
     static PassSpec listing_pass(const TileListSpec& list) {
         PassSpec pass;
         pass.name = list.name;
-        pass.lists = list.name;
-        pass.kind = PassKind::compute;
         pass.folder = list.folder;
         pass.module = list.module;
         pass.shader = list.predicate;
@@ -88,15 +86,16 @@ private:
         pass.when = list.when;
         pass.buffers = {access(list.runs(), AccessSpec::Kind::write, list.place),
                         access(list.args(), AccessSpec::Kind::atomic, list.place)};
-        pass.dispatch.tile.number = kTilesOfAGroup * (list.of ? 1 : list.tile.number);
-        pass.dispatch.over = list.of ? list.of->texture : list.on;
+        DispatchSpec dispatch;
+        dispatch.tile.number = kTilesOfAGroup * (list.of ? 1 : list.tile.number);
+        dispatch.over = list.of ? list.of->texture : list.on;
+        pass.work = ComputeSpec{dispatch, list.name};
         pass.place = list.place;
         return pass;
     }
 
     static void confine(PassSpec& pass, const TileListSpec& list) {
-        pass.instances.emplace();
-        pass.instances->indirect = list.args();
+        pass.draw()->instances.emplace().indirect = list.args();
         // At kTileRunsBinding.
         pass.buffers.insert(pass.buffers.begin(), access(list.runs(), AccessSpec::Kind::read, pass.place));
         append(pass.when, list.when);

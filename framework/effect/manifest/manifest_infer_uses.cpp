@@ -30,7 +30,7 @@ public:
         const ShaderUses& main = uses_of(ShaderFile::main);
         if (pass.infers_reads) {
             add_reads(main);
-            if (!pass.vertex.empty() && fs::is_regular_file(pass.folder / pass.vertex))
+            if (pass.vertex() && fs::is_regular_file(pass.folder / *pass.vertex()))
                 add_reads(uses_of(ShaderFile::vertex));
             put_in_order(pass.reads, manifest_.inputs);
         }
@@ -167,8 +167,7 @@ private:
 
 bool is_pointwise(const EffectManifest& manifest) {
     return std::ranges::all_of(manifest.passes, [](const PassSpec& pass) {
-        return pass.kind == PassKind::draw && !pass.has_vertex_shader() && pass.images.empty() &&
-               pass.buffers.empty() && std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
+        return pass.fills_screen() && pass.images.empty() && pass.buffers.empty() && std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
     });
 }
 
@@ -177,7 +176,7 @@ bool counts_from_part(const EffectManifest& manifest, const fs::path& glsl_folde
     ShaderTexts texts;
     return std::ranges::any_of(manifest.passes, [&](const PassSpec& pass) {
         Diagnostics told_later;
-        if (pass.kind != PassKind::draw) return false;
+        if (!pass.draw()) return false;
         const ShaderSource text = author_text(manifest, pass, shared, told_later, ShaderFile::main, &texts);
         const std::vector<Token> tokens = glsl_tokens(text);
         bool has_place = false, has_origin = false, has_size = false;

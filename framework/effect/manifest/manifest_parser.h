@@ -79,7 +79,8 @@ private:
     void tile_list(const Reader::Named& declared);
     void tiles_of_texture(const Reader& reader, TileListSpec& list);
     PassSpec pass(const Reader& reader);
-    void shaders(const Reader& reader, PassSpec& pass);
+    void shaders(const Reader& reader, PassSpec& pass, const std::string& ending);
+    DrawSpec drawn(const Reader& reader);
     InstanceSpec instances(const Reader& reader);
     DispatchSpec dispatch(const Reader& reader);
 

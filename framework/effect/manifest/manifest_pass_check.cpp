@@ -49,15 +49,12 @@ public:
         state_.pass = &pass;
         if (!pass.name.empty() && !names_.insert(pass.name).second)
             state_.fault(pass.place, "another pass has this name" + elsewhere(pass));
-        for (const std::string& file : {pass.shader, pass.vertex}) check_shader_file(file);
+        for (const std::string& file : pass.shader_files()) check_shader_file(file);
         for (const ReadSpec& read : pass.reads) check_read(read);
         for (const AccessSpec& image : pass.images) check_image(image);
         for (const AccessSpec& buffer : pass.buffers) check_buffer(buffer);
-        check_indirect(pass.dispatch.indirect);
-        if (pass.instances) check_indirect(pass.instances->indirect);
-        if (!pass.dispatch.over.empty() && !manifest_.find_texture(pass.dispatch.over))
-            state_.fault(pass.place, "dispatches over '" + pass.dispatch.over + "', which is not a texture" +
-                                         did_you_mean(pass.dispatch.over, textures_));
+        if (pass.compute()) check_dispatch(pass.compute()->dispatch);
+        if (pass.draw() && pass.draw()->instances) check_indirect(pass.draw()->instances->indirect);
         check_writes(state_);
         check_counts();
         check_conditions(pass.when);
@@ -107,13 +104,20 @@ private:
                                                "' has 'history', but no pass reads '" + spec.name + ".prev'");
     }
 
+    void check_dispatch(const DispatchSpec& dispatch) {
+        check_indirect(dispatch.indirect);
+        if (!dispatch.over.empty() && !manifest_.find_texture(dispatch.over))
+            state_.fault(state_.pass->place, "dispatches over '" + dispatch.over +
+                                                 "', which is not a texture" +
+                                                 did_you_mean(dispatch.over, textures_));
+    }
+
     void check_shader_file(const std::string& file) {
-        if (file.empty()) return;
         // A shader is part of its effect or module: nothing from elsewhere on the disk is read.
         if (file.find('/') != std::string::npos)
-            state_.fault(state_.pass->place, state_.pass->lists.empty()
-                                                 ? "'shader' is a file name without folders"
-                                                 : "'predicate' is a file name without folders");
+            state_.fault(state_.pass->place, state_.pass->lists()
+                                                 ? "'predicate' is a file name without folders"
+                                                 : "'shader' is a file name without folders");
         else if (!state_.is_there(file))
             state_.fault(state_.pass->place, "no file '" + file + "' in " + state_.pass->folder.string());
     }
@@ -160,8 +164,7 @@ private:
     /// The pixel of a draw over the full screen is a texel of what it reads.
     void check_pixel_read(const ReadSpec& read, const InputSpec* input, const TextureSpec* texture) {
         const std::string reads = "reads '" + read.glsl_name() + "' by the pixel, ";
-        if (state_.pass->kind != PassKind::draw || state_.pass->has_vertex_shader() ||
-            !state_.pass->lists.empty())
+        if (!state_.pass->fills_screen())
             state_.fault(read.place, reads + "which only a draw over the full screen can");
         else if (input && !find_role(input->role))
             state_.fault(read.place, reads + "but an 'aov:' image may have another size: fetch its texels");

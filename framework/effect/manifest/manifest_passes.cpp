@@ -17,22 +17,26 @@ PassSpec ManifestParser::pass(const Reader& reader) {
     pass.module = reading_ ? reading_->spec.name : "";
     // One that is not snake_case names the pass in messages nevertheless.
     if (const Node* name = reader.node().find("name")) pass.name = name->string;
-    if (reader.kind() == "compute") pass.kind = PassKind::compute;
-    if (reader.kind() == "clear") pass.kind = PassKind::clear;
-    if (reader.kind() == "copy") pass.kind = PassKind::copy;
     add_conditions(reader, pass.when);
-    if (pass.kind == PassKind::copy) {
+    if (reader.kind() == "copy") {
         copied(reader, pass);
-        return pass;
+    } else if (reader.kind() == "clear") {
+        read_writes(reader, pass.writes);
+        pass.work = ClearSpec{reader.has("value") ? reader.numbers("value") : std::vector<double>{}};
+    } else if (reader.kind() == "compute") {
+        shaders(reader, pass, ".comp");
+        const auto groups = reader.object("dispatch");
+        pass.work = ComputeSpec{groups ? dispatch(*groups) : DispatchSpec{}, std::nullopt};
+    } else {
+        pass.infers_writes = read_writes(reader, pass.writes);
+        shaders(reader, pass, ".frag");
+        pass.work = drawn(reader);
     }
-    if (pass.kind != PassKind::compute)
-        pass.infers_writes = read_writes(reader, pass.writes) && pass.kind == PassKind::draw;
-    if (pass.kind != PassKind::clear) shaders(reader, pass);
-    else if (reader.has("value")) pass.clear_value = reader.numbers("value");
     return pass;
 }
 
 void ManifestParser::copied(const Reader& reader, PassSpec& pass) {
+    pass.work = CopySpec{};
     ReadSpec from;
     from.name = reader.text("from");
     from.place = reader.place("from");
@@ -45,8 +49,7 @@ void ManifestParser::copied(const Reader& reader, PassSpec& pass) {
 }
 
 /// What a pass that runs a shader has.
-void ManifestParser::shaders(const Reader& reader, PassSpec& pass) {
-    const char* const ending = pass.kind == PassKind::compute ? ".comp" : ".frag";
+void ManifestParser::shaders(const Reader& reader, PassSpec& pass, const std::string& ending) {
     pass.shader = reader.has("shader") ? reader.text("shader") : pass.name + ending;
     pass.infers_reads = read_reads(reader, pass.reads);
     pass.images = read_accesses(reader, "images");
@@ -56,17 +59,18 @@ void ManifestParser::shaders(const Reader& reader, PassSpec& pass) {
             pass.defines[name] = value.is_string() ? value.string : std::to_string(value.integer);
     if (reader.has("repeat")) pass.repeat = count(reader, "repeat", kRepeatCount);
     pass.max_iterations = int(reader.integer("max_iterations"));
-    if (pass.kind == PassKind::compute) {
-        if (const auto groups = reader.object("dispatch")) pass.dispatch = dispatch(*groups);
-        return;
-    }
-    pass.vertex = reader.text("vertex");
-    pass.over = reader.text("over");
-    if (const auto drawn = reader.object("instances")) pass.instances = instances(*drawn);
+}
+
+DrawSpec ManifestParser::drawn(const Reader& reader) {
+    DrawSpec draw;
+    if (reader.has("vertex")) draw.vertex = reader.text("vertex");
+    if (reader.has("over")) draw.over = reader.text("over");
+    if (const auto instance = reader.object("instances")) draw.instances = instances(*instance);
     const std::string blend = reader.text("blend");
-    if (blend == "add") pass.blend = gpu::Blend::add;
-    if (blend == "min") pass.blend = gpu::Blend::min;
-    if (blend == "max") pass.blend = gpu::Blend::max;
+    if (blend == "add") draw.blend = gpu::Blend::add;
+    if (blend == "min") draw.blend = gpu::Blend::min;
+    if (blend == "max") draw.blend = gpu::Blend::max;
+    return draw;
 }
 
 InstanceSpec ManifestParser::instances(const Reader& reader) {

@@ -48,10 +48,10 @@ void check_over(const EffectManifest& manifest, const PassSpec& pass, Diagnostic
     const std::string label = label_of(manifest, pass) + ": ";
     std::vector<std::string> lists;
     for (const TileListSpec& list : manifest.tiles) lists.push_back(list.name);
-    if (!manifest.find_tile_list(pass.over))
-        diagnostics.error(pass.place, label + "runs over '" + pass.over + "', which is not a tile list" +
-                                          did_you_mean(pass.over, lists));
-    const TileListSpec* list = manifest.find_tile_list(pass.over);
+    const TileListSpec* list = manifest.tile_list_of(pass);
+    if (!list)
+        diagnostics.error(pass.place, label + "runs over '" + *pass.over() + "', which is not a tile list" +
+                                          did_you_mean(*pass.over(), lists));
     for (const WriteSpec& write : pass.writes)
         if (const std::string fault = list ? fault_of_target(manifest, *list, write) : ""; !fault.empty())
             diagnostics.error(write.place, label + "runs over tiles, so what it writes, '" + write.name +
@@ -63,12 +63,12 @@ void check_over(const EffectManifest& manifest, const PassSpec& pass, Diagnostic
 void check_tiles(const EffectManifest& manifest, Diagnostics& diagnostics) {
     for (const TileListSpec& list : manifest.tiles) {
         check_grid(manifest, list, diagnostics);
-        const auto runs_over = [&](const PassSpec& pass) { return pass.over == list.name; };
+        const auto runs_over = [&](const PassSpec& pass) { return pass.over() && *pass.over() == list.name; };
         if (std::none_of(manifest.passes.begin(), manifest.passes.end(), runs_over))
             diagnostics.error(list.place, "no pass runs over the tile list '" + list.name + "'");
     }
     for (const PassSpec& pass : manifest.passes)
-        if (!pass.over.empty()) check_over(manifest, pass, diagnostics);
+        if (pass.over()) check_over(manifest, pass, diagnostics);
 }
 
 }  // namespace aftershade

@@ -15,6 +15,10 @@ namespace aftershade {
 
 namespace {
 
+gpu::Blend blend_of(const PassSpec& pass) {
+    return pass.draw() ? pass.draw()->blend : gpu::Blend::none;
+}
+
 class WriteChecker {
 public:
     explicit WriteChecker(PassState& state) : manifest_(state.manifest), pass_(state.pass), state_(state) {}
@@ -22,13 +26,13 @@ public:
     void check() {
         const PassSpec& pass = *pass_;
         // The grammar reports an empty list.
-        if (pass.kind == PassKind::draw && pass.infers_writes && pass.writes.empty())
+        if (pass.infers_writes && pass.writes.empty())
             state_.fault(pass.place, state_.is_there(pass.shader)
                                          ? "writes nothing: it has no 'writes', and '" + pass.shader +
                                                "' has no 'out_' and the name of an output or a texture"
                                          : "writes nothing");
         const auto writes = [](const AccessSpec& access) { return access.kind != AccessSpec::Kind::read; };
-        if (pass.kind == PassKind::compute && std::none_of(pass.images.begin(), pass.images.end(), writes) &&
+        if (pass.compute() && std::none_of(pass.images.begin(), pass.images.end(), writes) &&
             std::none_of(pass.buffers.begin(), pass.buffers.end(), writes))
             state_.fault(pass.place, "writes no image and no buffer");
         std::set<std::string> seen;
@@ -37,7 +41,7 @@ public:
                 state_.fault(write.place, "writes '" + write.name + "' twice");
             check_write(write);
         }
-        if (pass.kind == PassKind::copy) check_copy();
+        if (pass.copies()) check_copy();
     }
 
 private:
@@ -60,8 +64,8 @@ private:
         const auto format = texture ? texture->format : texture_format_of_role(output->role);
         check_blend(write, format);
         check_base(write);
-        if (pass_->kind == PassKind::clear) {
-            if (const std::string why = why_not_in_format(pass_->clear_value, format); !why.empty())
+        if (const ClearSpec* clear = pass_->clear()) {
+            if (const std::string why = why_not_in_format(clear->value, format); !why.empty())
                 state_.fault(write.place, "'value' " + why);
             return;
         }
@@ -111,12 +115,13 @@ private:
     }
 
     void check_blend(const WriteSpec& write, gpu::TextureFormat format) {
-        if (pass_->blend == gpu::Blend::none) return;
+        const gpu::Blend blend = blend_of(*pass_);
+        if (blend == gpu::Blend::none) return;
         const std::string name(gpu::texture_format_name(format));
         if (gpu::is_integer(format))
             state_.fault(write.place,
                          "blends into '" + write.name + "', but integers (" + name + ") do not blend");
-        else if (pass_->blend == gpu::Blend::add && !name.ends_with('f'))
+        else if (blend == gpu::Blend::add && !name.ends_with('f'))
             state_.fault(write.place,
                          "adds into '" + write.name + "', but " + name + " stops at 1; use a float format");
         if (manifest_.find_texture(write.name) && !state_.filled.contains(write.name))
@@ -126,9 +131,8 @@ private:
     /// Instances and tiles leave the rest of a target as it was, which must be something.
     void check_base(const WriteSpec& write) {
         const TextureSpec* texture = manifest_.find_texture(write.name);
-        if (!pass_->instances || pass_->instances->covers || state_.filled.contains(write.name) ||
-            (texture && texture->partial))
-            return;
+        const bool is_part = pass_->draw() && pass_->draw()->instances && !pass_->draw()->instances->covers;
+        if (!is_part || state_.filled.contains(write.name) || (texture && texture->partial)) return;
         state_.fault(write.place,
                      "draws over parts of '" + write.name +
                          "' before anything has filled the rest: copy an input to it (a pass of kind "
@@ -143,7 +147,7 @@ private:
         const auto read = std::find_if(pass_->reads.begin(), pass_->reads.end(), same);
         if (read == pass_->reads.end()) return;
         const std::string both = "reads and writes '" + write.name + "'";
-        if (pass_->blend != gpu::Blend::none) state_.fault(write.place, both + " while it blends");
+        if (blend_of(*pass_) != gpu::Blend::none) state_.fault(write.place, both + " while it blends");
         if (texture.layers > 1) state_.fault(write.place, both + ", of which it writes one layer only");
         else if (texture.auto_mips) state_.fault(write.place, both + ", whose 'mips' are automatic");
         else if (texture.mips > 1 && !read->level)
@@ -171,7 +175,7 @@ std::string label_of(const EffectManifest& manifest, const PassSpec& pass) {
     // A module is fine or not in an effect: what it reads may be missing there.
     const std::string origin =
         pass.module.empty() ? "" : " of the module '" + pass.module + "' in '" + manifest.id + "'";
-    return (pass.lists.empty() ? "pass '" : "tile list '") + pass.name + "'" + origin;
+    return (pass.lists() ? "tile list '" : "pass '") + pass.name + "'" + origin;
 }
 
 void PassState::fault(const Place& place, const std::string& text) {
