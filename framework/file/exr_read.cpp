@@ -197,7 +197,7 @@ void ExrFile::Impl::read_pixels(int part, const Imf::FrameBuffer& frame) {
 Image ExrFile::Impl::add_slices(Imf::FrameBuffer& frame, const ExrRequest& request) const {
     const Window& window = parts[std::size_t(request.part)].data_window;
     const std::vector<std::string>& names = request.channels;
-    Image image(window.width(), window.height(), int(names.size()), request.type);
+    Image image(window.width(), window.height(), int(names.size()), request.type, FirstValues::unwritten);
     const std::size_t x_stride = names.size() * sizeof(float);
     const std::size_t y_stride = x_stride * std::size_t(window.width());
     const Imf::PixelType type = request.type == ComponentType::float32 ? Imf::FLOAT : Imf::UINT;

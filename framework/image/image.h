@@ -4,14 +4,13 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
-#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <variant>
+
+#include "framework/image/pixel_memory.h"
 
 namespace aftershade {
 
@@ -29,45 +28,34 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// Numbers in memory that is zero without being written: the system makes its pages where they are first
-/// touched, so the threads that fill an image make them, not its constructor. Not a vector, which goes
-/// through the elements one by one to make, copy and end them, however little there is to do for each. [value
-/// type: safe to read from several threads]
+/// Numbers that are zero at first without being written where their memory is fresh: the system makes its pages
+/// where they are first touched, so the threads that fill an image make them, not its constructor. Not a vector,
+/// which goes through the elements one by one to make, copy and end them, however little there is to do for each.
+/// [value type: safe to read from several threads]
 template <typename Value>
 requires std::is_arithmetic_v<Value>
 class PixelArray {
 public:
     PixelArray() = default;
-    explicit PixelArray(std::size_t count)
-        : values_(taken(std::calloc(count, sizeof(Value)), count)), count_(count) {}
-    PixelArray(const PixelArray& other)
-        : values_(taken(std::malloc(other.count_ * sizeof(Value)), other.count_)), count_(other.count_) {
-        if (count_ > 0) std::memcpy(values_.get(), other.values_.get(), count_ * sizeof(Value));
+    explicit PixelArray(std::size_t count, FirstValues first = FirstValues::zero)
+        : values_(static_cast<Value*>(take_pixel_memory(count * sizeof(Value), first))), count_(count) {}
+    PixelArray(const PixelArray& other) : PixelArray(other.count_, FirstValues::unwritten) {
+        if (count_ > 0) std::memcpy(values_, other.values_, count_ * sizeof(Value));
     }
     PixelArray(PixelArray&& other) noexcept
-        : values_(std::move(other.values_)), count_(std::exchange(other.count_, 0)) {}
+        : values_(std::exchange(other.values_, nullptr)), count_(std::exchange(other.count_, 0)) {}
     PixelArray& operator=(PixelArray other) noexcept {
         std::swap(values_, other.values_);
         std::swap(count_, other.count_);
         return *this;
     }
-    ~PixelArray() = default;
+    ~PixelArray() { give_pixel_memory(values_, count_ * sizeof(Value)); }
 
-    std::span<Value> values() { return {values_.get(), count_}; }
-    std::span<const Value> values() const { return {values_.get(), count_}; }
+    std::span<Value> values() { return {values_, count_}; }
+    std::span<const Value> values() const { return {values_, count_}; }
 
 private:
-    struct Free {
-        void operator()(Value* memory) const noexcept { std::free(memory); }
-    };
-    using Memory = std::unique_ptr<Value[], Free>;
-
-    static Memory taken(void* memory, std::size_t count) {
-        if (!memory && count > 0) throw std::bad_alloc();
-        return Memory(static_cast<Value*>(memory));
-    }
-
-    Memory values_;
+    Value* values_ = nullptr;
     std::size_t count_ = 0;
 };
 
@@ -75,12 +63,13 @@ private:
 class Image {
 public:
     Image() = default;
-    /// Zero-filled.
-    Image(int width, int height, int channels, ComponentType type = ComponentType::float32)
+    /// `first`: `unwritten` for a caller that writes every value.
+    Image(int width, int height, int channels, ComponentType type = ComponentType::float32,
+          FirstValues first = FirstValues::zero)
         : width_(width), height_(height), channels_(channels) {
         const std::size_t count = std::size_t(width) * std::size_t(height) * std::size_t(channels);
-        if (type == ComponentType::float32) values_ = PixelArray<float>(count);
-        else values_ = PixelArray<std::uint32_t>(count);
+        if (type == ComponentType::float32) values_ = PixelArray<float>(count, first);
+        else values_ = PixelArray<std::uint32_t>(count, first);
     }
 
     int width() const { return width_; }

@@ -24,7 +24,8 @@ PendingFrame::Read begin_read(const std::string& name, const gpu::Texture& textu
     const bool is_integer = gpu::is_integer(desc.format);
     if (channels == 0 || is_integer) channels = gpu::channel_count(desc.format);
     const ComponentType type = is_integer ? ComponentType::uint32 : ComponentType::float32;
-    return {name, false, Image(desc.width, desc.height, channels, type), texture.begin_read(channels, as)};
+    return {name, false, Image(desc.width, desc.height, channels, type, FirstValues::unwritten),
+            texture.begin_read(channels, as)};
 }
 
 /// Whether all values were seen to be finite.
