@@ -30,7 +30,8 @@ namespace {
 constexpr std::uint64_t kMiB = 1024 * 1024;
 std::string remedy_text() {
     return "raise the limit (ulimit -v, ulimit -d), free memory, or run less at once (" +
-           spelled(Option::scale, "1/2") + advice(", ", Option::region, "", "") + ")";
+           spelled(Option::scale, "1/2") + advice(", ", Option::region, "", "") +
+           advice(", ", Option::read_ahead, "1", "") + ")";
 }
 /// What a handler of signals needs, which must not allocate.
 struct LastWords {

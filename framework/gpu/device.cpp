@@ -183,7 +183,7 @@ std::vector<Device> devices_named(const std::vector<Device>& devices, std::strin
     std::ranges::copy_if(devices, std::back_inserter(found),
                          [&](const Device& device) { return is_named(device, std::string(name)); });
     if (found.size() == 1 && !found.front().is_hidden) return found;
-    const std::string subject = fmt::format("device '{}'", name);
+    const std::string subject = fmt::format("device '{}'", printable(name));
     if (found.empty())
         throw Error(ErrorKind::usage,
                     subject + " is not there; " +

@@ -76,6 +76,12 @@ public:
         if (!step) return;
         const std::string texture = text.substr(dot + 1);
         std::vector<std::string> known = output_names(*step->manifest);
+        if (const TextureSpec* spec = step->manifest->find_texture(texture); spec && spec->layers > 1) {
+            diagnostics_.error(place, step->name + "." + texture + " has " + std::to_string(spec->layers) +
+                                          " layers, and a tap shows a texture of one; tap what a pass makes "
+                                          "of it");
+            return;
+        }
         for (const TextureSpec& spec : step->manifest->textures)
             if (spec.layers == 1) known.push_back(spec.name);
         if (std::find(known.begin(), known.end(), texture) == known.end()) {

@@ -109,6 +109,7 @@ TEST_F(SimulatedCards, ANameThatNoCardHasEndsTheCommandAndSaysWhereItCameFrom) {
                   .err.find("aftershade: error: --device: device 'cuda:2' is not there; "
                             "EGL lists 0 (/dev/dri/card0, "),
               0U);
+    EXPECT_NE(render({"--device", "a\nb"}, 2).err.find("device 'a?b' is not there"), std::string::npos);
     EXPECT_EQ(call({"check", "vignette", "--device", "7"}).exit_code, 2);
     EXPECT_EQ(
         call({"golden", "run", AFTERSHADE_SOURCE_DIR "/tests/golden", "--backend", "auto", "--device", "7"})

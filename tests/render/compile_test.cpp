@@ -113,6 +113,15 @@ TEST_F(Compile, RefusesATapOfAnInputOrOfNothing) {
     EXPECT_EQ(Bound(effects_, look_of(R"({ "effect": "fog" })"), {{}, {"fog.depth"}}).faults(),
               "taps fog.depth: error: fog has no texture 'depth' (known: 'color')\n");
     EXPECT_EQ(Bound(effects_, look_of(R"({ "effect": "fog" })"), {{}, {"fog.color"}}).faults(), "");
+    effects_.add(
+        "pile",
+        R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
+        "textures": { "pages": { "format": "rgba16f", "layers": 3, "clear": 0, "doc": "Pages." } },
+        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "pages"], "writes": ["color"] } ])",
+        "void main() { out_color = texelFetch(pages, ivec3(0), 0) + texelFetch(color, ivec2(0), 0); }\n");
+    EXPECT_EQ(Bound(effects_, look_of(R"({ "effect": "pile" })"), {{}, {"pile.pages"}}).faults(),
+              "taps pile.pages: error: pile.pages has 3 layers, and a tap shows a texture of one; tap what a "
+              "pass makes of it\n");
 }
 
 class Values : public Compile {
