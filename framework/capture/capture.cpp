@@ -24,14 +24,6 @@ namespace aftershade {
 
 namespace {
 
-std::vector<std::string> listed(const FoundChannels& found) {
-    std::vector<std::string> names;
-    for (const auto& layer : found)
-        for (const std::string& name : layer)
-            if (!name.empty()) names.push_back(name);
-    return names;
-}
-
 Window grid_of(const FrameFile& file, const FoundChannels& channels, const std::string& luminance) {
     if (!luminance.empty()) return file.window_of(luminance);
     return channels.empty() ? file.merged().data_window : file.window_of(channels[0][0]);
@@ -106,7 +98,7 @@ void CaptureReader::add_role(OpenFrame& open, const std::string& role, const Rol
                                                                  sequence_.channels.contains(role)));
     else return;
     open.header.role_channels[role] =
-        source.luminance.empty() ? listed(source.channels) : std::vector{source.luminance};
+        source.luminance.empty() ? names_of(source.channels) : std::vector{source.luminance};
     find_others(open, role, source);
     open.roles[role] = std::move(source);
 }

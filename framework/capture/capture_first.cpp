@@ -15,14 +15,6 @@ namespace aftershade {
 
 namespace {
 
-std::vector<std::string> named(const FoundChannels& found) {
-    std::vector<std::string> names;
-    for (const auto& layer : found)
-        for (const std::string& name : layer)
-            if (!name.empty()) names.push_back(name);
-    return names;
-}
-
 bool has_all(const ExrPart& part, const FoundChannels& channels) {
     return std::ranges::all_of(channels, [&](const std::vector<std::string>& names) {
         return std::ranges::all_of(
@@ -35,7 +27,7 @@ bool has_all(const ExrPart& part, const FoundChannels& channels) {
 std::string CaptureReader::text_of(const RoleSource& source) {
     if (source.from_cryptomatte) return "a Cryptomatte";
     if (!source.luminance.empty()) return list_of_names(std::vector{source.luminance});
-    return list_of_names(named(source.channels), "and");
+    return list_of_names(names_of(source.channels), "and");
 }
 
 /// Those of the whole capture before those that it does not have.
@@ -168,7 +160,7 @@ void CaptureReader::hold_channels(const std::string& role, const FrameFile& file
         return;
     header.differences.push_back(role + " is read from " + first->sources.at(role) + ", as in " +
                                  first->header->path.string() +
-                                 (found ? ", and not from " + list_of_names(named(*found), "and") : ""));
+                                 (found ? ", and not from " + list_of_names(names_of(*found), "and") : ""));
     found = held->second;
     decoding = first->decodings.at(role);
 }

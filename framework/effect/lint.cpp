@@ -7,6 +7,7 @@
 #include "framework/base/option.h"
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/isf/isf_types.h"
+#include "framework/effect/shader_source.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

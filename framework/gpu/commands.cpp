@@ -88,7 +88,7 @@ private:
             }
             if (sampled.level >= sampled.texture->desc().mips) {
                 fail(program_,
-                     fmt::format("texture '{}' has no level {}", sampled.texture->label(), sampled.level));
+                     fmt::format("texture '{}' has no level {}", sampled.texture->label(), *sampled.level));
             }
         }
         check_sizes(bindings_.uniforms, impl_.limits.uniform_block_bytes, "GL_MAX_UNIFORM_BLOCK_SIZE");

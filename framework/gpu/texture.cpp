@@ -207,14 +207,6 @@ void Texture::clear(float value) {
     clear_to({value, value, value, value});
 }
 
-void Texture::clear_uint(std::uint32_t value) {
-    // Signed formats take the bits, as upload() does.
-    const double number = is_signed_integer(desc_.format)
-                              ? static_cast<double>(static_cast<std::int32_t>(value))
-                              : static_cast<double>(value);
-    clear_to({number, number, number, number});
-}
-
 void Texture::clear_to(const std::array<double, 4>& value) {
     clear_to(value, std::nullopt, std::nullopt);
 }

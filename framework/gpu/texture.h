@@ -43,10 +43,9 @@ public:
 
     /// Every texel, every level and layer.
     void clear(float value);
-    void clear_uint(std::uint32_t value);
     /// A value for each channel, as a shader would write it: rounded and kept in range for integers.
     void clear_to(const std::array<double, 4>& value);
-    /// One level, and one layer of it; -1: every one.
+    /// One level, and one layer of it; nullopt: every one.
     void clear_to(const std::array<double, 4>& value, std::optional<int> level, std::optional<int> layer);
     /// Fills levels 1.. from level 0 with GL's own box filter.
     void generate_mips();

@@ -85,10 +85,10 @@ bool FrameGraph::overwrites(const Pass& pass, const Target& target) const {
 void FrameGraph::fill(const Pass& pass) {
     const auto mark = [&](TextureHandle handle, std::optional<int> level, std::optional<int> layer) {
         Texture& texture = textures_[std::size_t(handle.texture)];
-        if (texture.options.auto_mips) level.reset();
+        const bool all_levels = !level || texture.options.auto_mips;
         const int layers = texture.desc.layers;
         for (int i = 0; i < int(texture.filled.size()); ++i)
-            if (level.value_or(i / layers) == i / layers && layer.value_or(i % layers) == i % layers)
+            if ((all_levels || *level == i / layers) && (!layer || *layer == i % layers))
                 texture.filled[std::size_t(i)] = true;
     };
     for (const Target& target : pass.targets) mark(target.texture, target.level, target.layer);

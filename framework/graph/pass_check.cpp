@@ -83,9 +83,9 @@ private:
             a.layers > 1 || b.layers > 1)
             fail(fmt::format("copies '{}' to '{}', which differ in size, format, levels or layers", from.name,
                              to.name));
-        if (const int level = pass_.targets.front().level; level > 0 || (level == 0 && b.mips > 1))
+        if (const auto level = pass_.targets.front().level; level && (*level > 0 || b.mips > 1))
             fail(fmt::format("copies '{}' to level {} of '{}' alone; copies take every level", from.name,
-                             level, to.name));
+                             *level, to.name));
     }
 
     void check_counts() const {

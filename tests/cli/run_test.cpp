@@ -410,5 +410,13 @@ TEST(Doctor, ExitsWithFourAndSaysWhyNothingIsUsable) {
     }
 }
 
+TEST_F(Run, PlainlyGivesTheSameBits) {
+    SKIP_WITHOUT(gpu::test_backend());
+    run({"film.json", "in_####.exr", "-o", "fast_####.exr"});
+    run({"film.json", "in_####.exr", "-o", "plain_####.exr", "--plain"});
+    for (const std::string frame : {"0001.exr", "0003.exr"})
+        EXPECT_TRUE(read_text(folder_ / ("plain_" + frame)) == read_text(folder_ / ("fast_" + frame)));
+}
+
 }  // namespace
 }  // namespace aftershade::test

@@ -116,7 +116,8 @@ TEST(TileLists, OfTexturesShareOneTextSoThatTheyShareAProgram) {
     for (const ParamSpec& spec : manifest.params) params.set(spec.name, spec.default_value);
     params.set("flag", true);
     const auto text = [&](const std::string& list) {
-        const auto pass = std::ranges::find(manifest.passes, list, &PassSpec::lists);
+        const auto pass = std::ranges::find_if(
+            manifest.passes, [&](const PassSpec& one) { return one.lists() && *one.lists() == list; });
         Diagnostics diagnostics;
         return assemble_shader({&manifest, &*pass, params, {}, kGlsl}, diagnostics, ShaderFile::main).text;
     };

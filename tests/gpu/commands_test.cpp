@@ -199,7 +199,7 @@ void main() { c = vec4(scale * float(count), offset.z, float(flag), rows[1].w); 
 
 TEST_P(DrawOn, WritesImagesAndBuffersFromAFragment) {
     Texture image = texture(2, 1, TextureFormat::r32ui);
-    image.clear_uint(0);
+    image.clear_to({0, 0, 0, 0});
     Buffer counter(context(), 4, "counter");
     const Program program = fragment(R"(layout(r32ui, binding = 1) uniform uimage2D image;
 layout(std430, binding = 0) buffer Counter { uint total; };

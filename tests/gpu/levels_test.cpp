@@ -209,7 +209,7 @@ TEST_P(LevelsOn, TakesTheLeastAndTheLargestByImageAtomicsAtALevel) {
     Texture least(context(), {.width = 4, .height = 4, .format = TextureFormat::r32ui, .mips = 2}, "least");
     Texture largest(context(), {.width = 4, .height = 4, .format = TextureFormat::r32i, .mips = 2},
                     "largest");
-    least.clear_uint(1000U);
+    least.clear_to({1000, 0, 0, 0});
     largest.clear(-1000.0F);
     const Program program = Program::compute(context(), R"(#version 450 core
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -120,7 +120,7 @@ TEST_P(TextureOn, ClearsEveryLevelAndLayer) {
         }
     }
     Texture ids = make({.width = 2, .height = 1, .format = TextureFormat::rg32ui});
-    ids.clear_uint(4000000000U);
+    ids.clear_to({4000000000.0, 4000000000.0, 0, 0});
     EXPECT_EQ(ids.read_uints(), std::vector<std::uint32_t>(4, 4000000000U));
 }
 

@@ -212,7 +212,7 @@ TEST(FrameGraph, RefusesAPassWhoseKindAndPartsDoNotAgree) {
               "pass 'odd' takes its count from 'table' of 8 bytes; the command takes 16");
     EXPECT_EQ(fault(PassKind::draw,
                     [&](Pass& p) {
-                        p.targets = {{a, -1, 0}};
+                        p.targets = {{a, std::nullopt, 0}};
                     }),
               "pass 'odd' draws to every level or layer of 'a' at once");
     EXPECT_EQ(fault(PassKind::draw,

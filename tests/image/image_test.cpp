@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include <unistd.h>
+
+#include "framework/base/memory_limit.h"
+
 namespace aftershade {
 namespace {
 
@@ -18,6 +22,31 @@ TEST(AnImage, IsZeroAlsoInMemoryThatHeldAnother) {
             std::ranges::fill(floats.floats(), 1.5f);
             std::ranges::fill(uints.uints(), 7u);
         }
+}
+
+TEST(AnImage, TakesOverTheMemoryOfOneOfItsSize) {
+    drop_kept_pixel_memory();
+    const auto memory_of = [](const Image& image) { return image.floats().data(); };
+    const float* const first = memory_of(Image(700, 700, 3));
+    EXPECT_EQ(memory_of(Image(700, 700, 3, ComponentType::float32, FirstValues::unwritten)), first);
+    EXPECT_EQ(memory_of(Image(700, 700, 3)), first);
+}
+
+/// Pages of a picture of 64 MiB count only once something is written to them.
+TEST(Images, HoldNoMoreMemoryThanWasOnceInUse) {
+    constexpr std::uint64_t kMiB = 1 << 20;
+    drop_kept_pixel_memory();
+    const std::uint64_t before = resident_bytes(getpid());
+    const auto write = [](int side) {
+        Image image(side, side, 4);
+        std::ranges::fill(image.floats(), 1.5f);
+    };
+    write(2048);  // 64 MiB
+    EXPECT_GT(resident_bytes(getpid()), before + 60 * kMiB) << "what was given back is not kept";
+    for (const int side : {2047, 2046, 2045}) write(side);
+    EXPECT_LT(resident_bytes(getpid()), before + 80 * kMiB);
+    drop_kept_pixel_memory();
+    EXPECT_LT(resident_bytes(getpid()), before + 20 * kMiB);
 }
 
 TEST(AnImage, IsCopiedWithItsValuesAndMovedWithItsMemory) {
