@@ -10,6 +10,7 @@
 
 #include "framework/base/names.h"
 #include "framework/base/parallel.h"
+#include "framework/scene/samples.h"
 
 namespace aftershade::scene {
 
@@ -224,7 +225,10 @@ VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const V
                 met[pixel] += own > 0 ? 1 : 0;
                 return;
             }
-            const auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
+            auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
+            if (surface)
+                surface->light_seed =
+                    light_seed(StopNumbers::pixel_seed(settings.seed, frame, x, y), std::uint32_t(sample));
             sums[pixel] += surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
             shadings[pixel] += surface ? 1 : 0;
             met[pixel] += surface ? 1 : 0;

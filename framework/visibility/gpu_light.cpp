@@ -59,7 +59,7 @@ public:
           scene_path_(renderer.scene().path.string()),
           executor_(executor_of(passes, make_graph(room, set))) {
         shade_.world_from_camera = glm::mat4(grids.reference().camera.world_from_camera);
-        shade_.ambient = vec4(glm::vec3(renderer.scene().ambient), 0);
+        shade_.ambient = with(renderer.scene().ambient, double(renderer.scene().ambient_rays));
         shade_.size_px = {renderer.width_px(), renderer.height_px()};
         shade_.px_per_tangent = float(renderer.pixels_per_tangent(grids.reference().camera));
         shade_.node_count = std::uint32_t(scene_.nodes.size());

@@ -173,6 +173,23 @@ TEST(Visibility, ShowsWhatLightAtEverySampleShowsWhereItHangsOnNeitherViewNorTim
     EXPECT_DOUBLE_EQ(plain.report.rate.of_covered_pixels, 32);
 }
 
+TEST(Visibility, FindsTheSameAmbientLightByFewShadingSamplesAndByAll) {
+    Scene scene = scene_of(R"({ "aftershade": 1, "size": [64, 36], "ambient": 0.8, "ambient_rays": 16,
+        "camera": { "position": [0, 0.6, 3], "target": [0, 0.2, 0], "focus_distance": 3, "f_number": 0.3 },
+        "materials": { "clay": { "albedo": 0.7, "specular": 0 } },
+        "objects": [ { "shape": "plane", "size": [6, 6], "rotation": [-90, 0, 0], "material": "clay" },
+                     { "shape": "box", "size": [1, 1, 1], "position": [0, 0.5, 0], "rotation": [0, 20, 0],
+                       "material": "clay" } ] })");
+    VisibilitySettings settings = with_samples(16);
+    const VisibilityPicture memoised = picture_of(scene, 1, settings);
+    settings.visibility = Visibility::supersampled;
+    const VisibilityPicture plain = picture_of(scene, 1, settings);
+    EXPECT_LT(memoised.report.shadings * 8, plain.report.shadings);
+    EXPECT_GT(psnr_db(memoised.color, plain.color), 38);
+    scene.ambient_rays = 0;
+    EXPECT_LT(psnr_db(picture_of(scene, 1, settings).color, plain.color), 25);
+}
+
 TEST(Visibility, TakesTheSamplesOfTheTruth) {
     Scene scene = shipped_scene("bats");
     scene.width_px = 96;

@@ -102,6 +102,16 @@ TEST_P(LightOn, EveryKindOfLightIsTheCpus) {
     }
 }
 
+TEST_P(LightOn, FindsWhatHidesTheAmbientLightByTheRaysOfTheCpu) {
+    scene::Scene scene = room_under("");
+    scene.ambient = glm::dvec3(0.8);
+    scene.ambient_rays = 16;
+    const Pictures both = pictures(context(), scene, 1, 1);
+    EXPECT_LT(other_pixels(both), 0.005);
+    scene.ambient_rays = 0;
+    EXPECT_GT(other_pixels({both.on_cpu, pictures(context(), scene, 1, 1).on_gpu}), 0.1);
+}
+
 TEST_P(LightOn, IsTheMeanOverTheSamplesOfAPixel) {
     const Pictures both = pictures(context(), scene::shipped_scene("toys"), 4, 27);
     double error = 0;
