@@ -16,8 +16,8 @@ scene::VisibilityPasses GlVisibility::passes() {
         return ids;
     };
     passes.resolve = [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
-                            const scene::SampleIds& samples, const scene::IdSet& set) {
-        return visibility::resolve_light(passes_, renderer, grids, samples, set);
+                            std::span<const std::uint32_t> ids, const scene::SampleIds& addresses) {
+        return visibility::resolve_light(passes_, renderer, grids, ids, addresses);
     };
     return passes;
 }
