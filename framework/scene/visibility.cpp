@@ -212,43 +212,24 @@ VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGr
     return picture;
 }
 
-/// Light at every sample.
-VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings) {
-    std::vector<dvec3> sums(pixel_count(renderer), dvec3(0));
-    std::vector<std::uint32_t> shadings(sums.size()), met(sums.size());
-    const bool sorted = settings.transparency.transparency == Transparency::sorted;
-    renderer.for_each_sample(
-        frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
-            const std::size_t pixel = pixel_of(renderer, x, y);
-            if (sorted) {
-                int own = 0;
-                sums[pixel] += world.radiance(ray, &own);
-                shadings[pixel] += std::uint32_t(own);
-                met[pixel] += own > 0 ? 1 : 0;
-                return;
-            }
-            auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
-            if (surface)
-                surface->light_seed =
-                    light_seed(StopNumbers::pixel_seed(settings.seed, frame, x, y), std::uint32_t(sample));
-            sums[pixel] += surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
-            shadings[pixel] += surface ? 1 : 0;
-            met[pixel] += surface ? 1 : 0;
-        });
+VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings,
+                               const SampleLighter& light) {
+    const LitSamples lit = light(renderer, frame, settings);
     VisibilityPicture picture;
     picture.color = Image(renderer.width_px(), renderer.height_px(), 4);
-    for (std::size_t i = 0; i < sums.size(); ++i) {
+    for (std::size_t i = 0; i < lit.sums.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c)
-            picture.color.floats()[i * 4 + c] = float(sums[i][int(c)] / settings.samples);
+            picture.color.floats()[i * 4 + c] = float(lit.sums[i][int(c)] / settings.samples);
         picture.color.floats()[i * 4 + 3] = 1;
     }
-    std::vector<float> of_pixel(shadings.begin(), shadings.end());
+    std::vector<float> of_pixel(lit.shadings.begin(), lit.shadings.end());
     picture.shading_rate = rate_image(renderer, of_pixel);
     VisibilityReport& report = picture.report;
     report.frame = frame;
     report.samples = settings.samples;
-    report.requests = report.shadings = std::reduce(shadings.begin(), shadings.end(), std::uint64_t(0));
-    complete(report, std::move(of_pixel), std::reduce(met.begin(), met.end(), std::uint64_t(0)));
+    report.requests = report.shadings =
+        std::reduce(lit.shadings.begin(), lit.shadings.end(), std::uint64_t(0));
+    complete(report, std::move(of_pixel), std::reduce(lit.met.begin(), lit.met.end(), std::uint64_t(0)));
     report.bytes.shading = report.bytes.supersampled;
     return picture;
 }
@@ -310,6 +291,34 @@ Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids,
     return blend(renderer, grids, ids, addresses, nullptr);
 }
 
+LitSamples::LitSamples(int width_px, int height_px)
+    : sums(std::size_t(width_px) * std::size_t(height_px)), shadings(sums.size()), met(sums.size()) {}
+
+LitSamples light_samples(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings) {
+    LitSamples lit(renderer.width_px(), renderer.height_px());
+    const bool sorted = settings.transparency.transparency == Transparency::sorted;
+    renderer.for_each_sample(
+        frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
+            const std::size_t pixel = pixel_of(renderer, x, y);
+            if (sorted) {
+                int own = 0;
+                lit.sums[pixel] += world.radiance(ray, &own);
+                lit.shadings[pixel] += std::uint32_t(own);
+                lit.met[pixel] += own > 0 ? 1 : 0;
+                return;
+            }
+            auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
+            if (surface)
+                surface->light_seed =
+                    light_seed(StopNumbers::pixel_seed(settings.seed, frame, x, y), std::uint32_t(sample));
+            lit.sums[pixel] +=
+                surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
+            lit.shadings[pixel] += surface ? 1 : 0;
+            lit.met[pixel] += surface ? 1 : 0;
+        });
+    return lit;
+}
+
 TruthSettings truth_of(const VisibilitySettings& settings) {
     TruthSettings truth;
     truth.kinds = {.lens = true, .shutter = true, .antialias = true};
@@ -323,7 +332,8 @@ TruthSettings truth_of(const VisibilitySettings& settings) {
 
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const VisibilityPasses& passes) {
-    if (settings.visibility != Visibility::memoised) return render_plain(renderer, frame, settings);
+    if (settings.visibility != Visibility::memoised)
+        return render_plain(renderer, frame, settings, passes.light);
     const ShadingGrids grids(renderer, frame, settings.grid);
     Traced traced;
     if (settings.transparency.transparency == Transparency::lists)

@@ -92,10 +92,23 @@ Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids,
 using LightResolver = std::function<Image(const SceneRenderer& renderer, const ShadingGrids& grids,
                                           std::span<const std::uint32_t> ids, const SampleIds& addresses)>;
 
-/// The parts of Visibility::memoised without lists.
+/// Light at every sample, by pixel.
+struct LitSamples {
+    LitSamples(int width_px, int height_px);
+    std::vector<glm::dvec3> sums;  ///< of the samples' light
+    std::vector<std::uint32_t> shadings;
+    std::vector<std::uint32_t> met;  ///< samples that met a surface
+};
+LitSamples light_samples(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings);
+/// That, or what does the same elsewhere.
+using SampleLighter =
+    std::function<LitSamples(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings)>;
+
+/// The parts of Visibility::memoised without lists, and of the others.
 struct VisibilityPasses {
     IdTracer trace = trace_ids;
     LightResolver resolve = resolve_light;
+    SampleLighter light = light_samples;
 };
 
 /// `renderer` is of a scene of meshes (triangulated()). All caches give the same picture; they change only
