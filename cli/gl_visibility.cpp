@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/visibility/gpu_light.h"
+#include "framework/visibility/gpu_samples.h"
 #include "framework/visibility/gpu_visibility.h"
 
 namespace aftershade::cli {
@@ -16,8 +17,12 @@ scene::VisibilityPasses GlVisibility::passes() {
         return ids;
     };
     passes.resolve = [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
-                            const scene::SampleIds& samples, const scene::IdSet& set) {
-        return visibility::resolve_light(passes_, renderer, grids, samples, set);
+                            std::span<const std::uint32_t> ids, const scene::SampleIds& addresses) {
+        return visibility::resolve_light(passes_, renderer, grids, ids, addresses);
+    };
+    passes.light = [this](const scene::SceneRenderer& renderer, int frame,
+                          const scene::VisibilitySettings& settings) {
+        return visibility::light_samples(passes_, renderer, frame, settings);
     };
     return passes;
 }

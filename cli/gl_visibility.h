@@ -1,4 +1,4 @@
-// `render --visibility memoised --visibility-on gl`.
+// `render --visibility-on gl`.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,14 +11,16 @@
 
 namespace aftershade::cli {
 
-/// Traces ids and resolves their light with GL, and has its caches count them too. [the thread that made it]
+/// Traces ids and resolves their light with GL, and has its caches count them too; or lights every sample.
+/// [the thread that made it]
 class GlVisibility {
 public:
     explicit GlVisibility(const gpu::GlChoice& gl) : context_(gl), passes_(context_) {}
     const gpu::ContextInfo& info() const { return context_.info(); }
     /// This must outlive them.
     scene::VisibilityPasses passes();
-    /// The renderer, the time of each pass over all frames and, for each frame, what its caches counted.
+    /// The renderer, the time of each pass over all frames and, for each memoised frame, what its caches
+    /// counted.
     nlohmann::ordered_json json() const;
 
 private:

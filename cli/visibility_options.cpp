@@ -62,12 +62,11 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->check(CLI::Range(0, scene::kMaxListNodes))
         ->each([&options](const std::string&) { options.has_list_nodes = true; })
         ->capture_default_str();
-    app.add_option(
-           "--visibility-on", options.device,
-           "memoised: what traces the samples: cpu, or gl in single precision by compute shaders, whose "
-           "caches count as well")
+    app.add_option("--visibility-on", options.device,
+                   "Trace and light the samples on the cpu, or with gl: in single precision by compute "
+                   "shaders, whose "
+                   "caches count as well")
         ->check(CLI::IsMember({"cpu", "gl"}))
-        ->each(of_memoised("--visibility-on"))
         ->capture_default_str();
     add_gl_options(app, options.gl);
     app.add_flag("--anisotropic-shading", settings.grid.anisotropic,
@@ -83,7 +82,7 @@ void check_transparency(const VisibilityArguments& options, std::optional<scene:
     const Place place{"--transparency " + options.transparency, 0, 0};
     if (transparency == scene::Transparency::lists && !memoised)
         diagnostics.error(place, "is for --visibility memoised");
-    if (transparency == scene::Transparency::lists && options.device == "gl")
+    if (transparency != scene::Transparency::stochastic && options.device == "gl")
         diagnostics.error(place, "is for --visibility-on cpu; gl takes stochastic");
     if (transparency == scene::Transparency::sorted && (memoised || !visibility))
         diagnostics.error(place, "is for --visibility supersampled or accumulation");
@@ -103,6 +102,9 @@ std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArgumen
             diagnostics.error({name, 0, 0}, "is for --visibility memoised");
     const auto transparency = *scene::parse_transparency(options.transparency);
     check_transparency(options, visibility, transparency, diagnostics);
+    if (!visibility && options.device == "gl")
+        diagnostics.error({"--visibility-on gl", 0, 0},
+                          "is for --visibility memoised, supersampled or accumulation");
     if (visibility == scene::Visibility::memoised && options.device == "gl" && options.cache == "lru")
         diagnostics.error({"--shading-cache lru", 0, 0},
                           "is for --visibility-on cpu; gl has fifo, in buckets of four entries");

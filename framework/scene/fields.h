@@ -19,6 +19,7 @@ namespace aftershade::scene {
 /// Limits that keep a mistyped scene from taking the machine's memory.
 inline constexpr std::size_t kMaxObjects = 8192;
 inline constexpr std::size_t kMaxLights = 64;
+inline constexpr int kMaxAmbientRays = 1024;
 
 /// The document.
 const grammar::Block& scene_block();

@@ -42,6 +42,10 @@ std::array<std::uint32_t, 3> pcg3d(std::uint32_t x, std::uint32_t y, std::uint32
     return {x, y, z};
 }
 
+std::uint32_t light_seed(std::uint32_t id, std::uint32_t sample) {
+    return pcg3d(id, sample, 0x2545f491u)[0];
+}
+
 std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint32_t seed) {
     if (count < 2) return 0;
     const std::uint32_t mask = std::bit_ceil(count) - 1;

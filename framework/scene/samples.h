@@ -10,6 +10,10 @@ namespace aftershade::scene {
 /// Jarzynski and Olano 2020, Hash Functions for GPU Rendering: pcg3d. The twin of glsl/hash.glsl.
 std::array<std::uint32_t, 3> pcg3d(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
+/// The seed of the random rays for light at a shading sample (its id and 0), or at one visibility sample (the
+/// pixel's seed and the sample's number).
+std::uint32_t light_seed(std::uint32_t id, std::uint32_t sample);
+
 /// A permutation of [0, count), by `seed`.
 std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint32_t seed);
 

@@ -116,7 +116,8 @@ struct Scene {
     std::vector<int> cuts;  ///< frames that begin a shot, ascending
     SceneCamera camera;
     glm::dvec3 background{0};  ///< radiance where nothing is hit
-    glm::dvec3 ambient{0};     ///< radiance from all around, without shadows: adds to irradiance
+    glm::dvec3 ambient{0};     ///< radiance from all around: adds to irradiance
+    int ambient_rays = 0;      ///< of each surface point, which seek what hides it; 0: nothing does
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Object> objects;

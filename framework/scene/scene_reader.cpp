@@ -32,6 +32,7 @@ void SceneReader::read(const Node& node) {
     scene_.fps = number(reader, "fps");
     scene_.background = vec3(reader, "background");
     scene_.ambient = vec3(reader, "ambient");
+    scene_.ambient_rays = integer(reader, "ambient_rays");
     read_frames(reader);
     if (const auto camera = reader.object("camera")) read_camera(*camera);
     if (const auto shutter = reader.object("shutter")) read_shutter(*shutter);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <iterator>
 #include <list>
 #include <unordered_map>
@@ -21,7 +20,7 @@ constexpr Names<ShadingCache, 5> kCacheNames = {{{ShadingCache::global, "global"
                                                  {ShadingCache::lru, "lru"},
                                                  {ShadingCache::fifo, "fifo"}}};
 
-/// Of an id and of its shading's number.
+/// Of an id and of its shading's address.
 constexpr std::uint64_t kEntryBytes = 8;
 
 /// Calls visit(sample) for the samples of a tile that met something.
@@ -41,53 +40,56 @@ void for_each_tile(const SampleIds& samples, int tile_px, const Visit& visit) {
         for (int left = 0; left < samples.width_px; left += tile_px) visit(left, top);
 }
 
-/// The shadings of a picture as they are made and used, by numbers from 0.
+/// The shadings of a picture as they are made and used.
 class Shadings {
 public:
-    explicit Shadings(const SampleIds& samples)
-        : samples_(samples), of_sample_(samples.ids.size(), kNoShading) {}
+    explicit Shadings(const SampleIds& samples) : samples_(samples) {
+        replay_.addresses.assign(samples.ids.size(), kNoShading);
+    }
 
-    std::uint32_t add() {
+    std::uint32_t add(std::uint32_t id) {
         uses_.push_back(0);
+        replay_.ids.push_back(id);
         return std::uint32_t(uses_.size()) - 1;
     }
-    void use(std::uint32_t shading, std::size_t sample) {
-        ++uses_[shading];
-        of_sample_[sample] = shading;
+    void use(std::uint32_t address, std::size_t sample) {
+        ++uses_[address];
+        replay_.addresses[sample] = address;
     }
-    CacheCounts counts(std::uint64_t cache_bytes) const {
-        CacheCounts counts;
-        counts.shadings = uses_.size();
-        counts.bytes = cache_bytes;
-        for (const std::uint32_t uses : uses_) counts.requests += uses;
-        counts.of_pixel.resize(samples_.pixel_count());
-        for (std::size_t pixel = 0; pixel < counts.of_pixel.size(); ++pixel)
+    CacheReplay replay(std::uint64_t cache_bytes) && {
+        replay_.shadings = uses_.size();
+        replay_.bytes = cache_bytes;
+        for (const std::uint32_t uses : uses_) replay_.requests += uses;
+        replay_.of_pixel.resize(samples_.pixel_count());
+        for (std::size_t pixel = 0; pixel < replay_.of_pixel.size(); ++pixel)
             for (std::size_t i = samples_.first_of(pixel); i < samples_.first_of(pixel + 1); ++i)
-                if (of_sample_[i] != kNoShading) counts.of_pixel[pixel] += 1.0f / float(uses_[of_sample_[i]]);
-        return counts;
+                if (const std::uint32_t address = replay_.addresses[i]; address != kNoShading)
+                    replay_.of_pixel[pixel] += 1.0f / float(uses_[address]);
+        return std::move(replay_);
     }
 
 private:
     const SampleIds& samples_;
     std::vector<std::uint32_t> uses_;
-    std::vector<std::uint32_t> of_sample_;
+    CacheReplay replay_;
 };
 
-/// A cache has entry_of(id), a shading that is kNoShading where the id is new; begin_tile(); and bytes().
+/// A cache has entry_of(id), an address that is kNoShading where the id is new; begin_tile(); and bytes().
 template <class Cache>
-CacheCounts replay_with(Cache cache, const SampleIds& samples, int tile_px) {
+CacheReplay replay_with(Cache cache, const SampleIds& samples, int tile_px) {
     Shadings shadings(samples);
     std::uint64_t bytes = 0;
     for_each_tile(samples, tile_px, [&](int left, int top) {
         cache.begin_tile();
         for_each_sample_of_tile(samples, left, top, tile_px, [&](std::size_t sample) {
-            std::uint32_t& shading = cache.entry_of(samples.ids[sample]);
-            if (shading == kNoShading) shading = shadings.add();
-            shadings.use(shading, sample);
+            const std::uint32_t id = samples.ids[sample];
+            std::uint32_t& address = cache.entry_of(id);
+            if (address == kNoShading) address = shadings.add(id);
+            shadings.use(address, sample);
         });
         bytes = std::max(bytes, cache.bytes());
     });
-    return shadings.counts(bytes);
+    return std::move(shadings).replay(bytes);
 }
 
 class InfiniteCache {
@@ -126,14 +128,14 @@ public:
     std::uint64_t bytes() const { return entries_ * kEntryBytes; }
 
 private:
-    using Order = std::list<std::pair<std::uint32_t, std::uint32_t>>;  // id, shading
+    using Order = std::list<std::pair<std::uint32_t, std::uint32_t>>;  // id, address
     std::size_t entries_;
     bool renews_;
     Order order_;
     std::unordered_map<std::uint32_t, Order::iterator> place_;
 };
 
-CacheCounts replay_sorted(const SampleIds& samples, int tile_px) {
+CacheReplay replay_sorted(const SampleIds& samples, int tile_px) {
     Shadings shadings(samples);
     std::uint64_t bytes = 0;
     std::vector<std::pair<std::uint32_t, std::size_t>> list;  // id, sample
@@ -143,13 +145,13 @@ CacheCounts replay_sorted(const SampleIds& samples, int tile_px) {
                                 [&](std::size_t sample) { list.emplace_back(samples.ids[sample], sample); });
         bytes = std::max(bytes, list.size() * kEntryBytes);
         std::sort(list.begin(), list.end());
-        std::uint32_t shading = 0;
+        std::uint32_t address = 0;
         for (std::size_t i = 0; i < list.size(); ++i) {
-            if (i == 0 || list[i].first != list[i - 1].first) shading = shadings.add();
-            shadings.use(shading, list[i].second);
+            if (i == 0 || list[i].first != list[i - 1].first) address = shadings.add(list[i].first);
+            shadings.use(address, list[i].second);
         }
     });
-    return shadings.counts(bytes);
+    return std::move(shadings).replay(bytes);
 }
 
 }  // namespace
@@ -158,7 +160,7 @@ std::optional<ShadingCache> parse_shading_cache(std::string_view name) {
     return value_named(kCacheNames, name);
 }
 
-CacheCounts replay(const SampleIds& samples, const ShadingCacheSettings& settings) {
+CacheReplay replay(const SampleIds& samples, const ShadingCacheSettings& settings) {
     switch (settings.cache) {
         case ShadingCache::global: return replay_with(InfiniteCache(false), samples, settings.tile_px);
         case ShadingCache::tile: return replay_with(InfiniteCache(true), samples, settings.tile_px);
@@ -168,29 +170,6 @@ CacheCounts replay(const SampleIds& samples, const ShadingCacheSettings& setting
     }
     return replay_with(FiniteCache(settings.entries, settings.cache == ShadingCache::lru), samples,
                        settings.tile_px);
-}
-
-IdSet::IdSet(std::span<const std::uint32_t> ids, std::uint32_t id_count)
-    : bits_((std::size_t(id_count) + 63) / 64) {
-    for (const std::uint32_t id : ids)
-        if (id != kNoShading) bits_[id / 64] |= std::uint64_t(1) << (id % 64);
-    before_.push_back(0);
-    for (const std::uint64_t word : bits_)
-        before_.push_back(before_.back() + std::uint32_t(std::popcount(word)));
-}
-
-std::uint32_t IdSet::number_of(std::uint32_t id) const {
-    const std::uint64_t smaller = bits_[id / 64] & ((std::uint64_t(1) << (id % 64)) - 1);
-    return before_[id / 64] + std::uint32_t(std::popcount(smaller));
-}
-
-std::vector<std::uint32_t> IdSet::ids() const {
-    std::vector<std::uint32_t> all;
-    all.reserve(size());
-    for (std::size_t word = 0; word < bits_.size(); ++word)
-        for (std::uint64_t rest = bits_[word]; rest != 0; rest &= rest - 1)
-            all.push_back(std::uint32_t(word * 64) + std::uint32_t(std::countr_zero(rest)));
-    return all;
 }
 
 }  // namespace aftershade::scene

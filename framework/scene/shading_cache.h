@@ -26,7 +26,8 @@ struct ShadingCacheSettings {
     int entries = 1024;  ///< lru and fifo
 };
 
-/// The ids that the samples of a picture met, kNoShading where nothing: `samples` of each pixel, row by row.
+/// The ids that the samples of a picture met, or the addresses of their light; kNoShading where they met
+/// nothing. `samples` of each pixel, row by row.
 struct SampleIds {
     std::span<const std::uint32_t> ids;
     int width_px = 0;
@@ -44,31 +45,18 @@ struct SampleIds {
     }
 };
 
-struct CacheCounts {
-    std::uint64_t requests = 0;     ///< samples that met a surface
-    std::uint64_t shadings = 0;     ///< misses
-    std::uint64_t bytes = 0;        ///< of the cache itself, the largest it was
-    std::vector<float> of_pixel{};  ///< shadings: each divided among the samples that used it
+/// What a cache makes of the samples. It keeps the addresses of shadings, whose light lies beside it, as in
+/// Liktor and Dachsbacher 2012; what it has dropped is shaded again at another address.
+struct CacheReplay {
+    std::uint64_t requests = 0;              ///< samples that met a surface
+    std::uint64_t shadings = 0;              ///< misses
+    std::uint64_t bytes = 0;                 ///< of the cache itself, the largest it was
+    std::vector<float> of_pixel{};           ///< shadings: each divided among the samples that used it
+    std::vector<std::uint32_t> ids{};        ///< of each shading, by its address
+    std::vector<std::uint32_t> addresses{};  ///< that each sample fetches; kNoShading where it met nothing
 };
 
 /// Samples come tile by tile, the pixels of a tile row by row.
-CacheCounts replay(const SampleIds& samples, const ShadingCacheSettings& settings);
-
-/// A set of ids in which each has a number: how many smaller ones there are. [const functions: any thread]
-class IdSet {
-public:
-    IdSet(std::span<const std::uint32_t> ids, std::uint32_t id_count);
-    std::uint32_t size() const { return before_.back(); }
-    std::uint32_t number_of(std::uint32_t id) const;
-    std::vector<std::uint32_t> ids() const;  ///< ascending
-    /// Bit i of word w is set where id 64 w + i is in the set.
-    const std::vector<std::uint64_t>& bits() const { return bits_; }
-    /// How many ids come before each word, and at the end all of them.
-    const std::vector<std::uint32_t>& before() const { return before_; }
-
-private:
-    std::vector<std::uint64_t> bits_;
-    std::vector<std::uint32_t> before_;
-};
+CacheReplay replay(const SampleIds& samples, const ShadingCacheSettings& settings);
 
 }  // namespace aftershade::scene

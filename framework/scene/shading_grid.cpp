@@ -8,6 +8,7 @@
 #include "framework/base/error.h"
 #include "framework/base/option.h"
 #include "framework/scene/blur_extent.h"
+#include "framework/scene/samples.h"
 #include "framework/scene/shape.h"
 
 namespace aftershade::scene {
@@ -180,8 +181,8 @@ dvec3 ShadingGrids::mean_albedo(const ShadingPlace& place, std::uint32_t id) con
 
 dvec3 ShadingGrids::shade(std::uint32_t id) const {
     const ShadingPlace place = place_of(id);
-    const Surface surface =
-        world_.surface_on(place.object, place.triangle, place.barycentric, place.from_behind);
+    Surface surface = world_.surface_on(place.object, place.triangle, place.barycentric, place.from_behind);
+    surface.light_seed = light_seed(id, 0);
     Shading shading = world_.shade(surface, dvec3(world_.state().camera.world_from_camera[3]));
     if (renderer_.scene().material_of(place.object).checker_cells != dvec2(0))
         shading.albedo = mean_albedo(place, id);

@@ -237,7 +237,7 @@ ShapePoint point_of(const Shape& shape, const MeshTree* mesh, const Ray& ray, co
 Bounds bounds_of(const Shape& shape, const MeshTree* mesh) {
     Bounds bounds;
     if (shape.kind == ShapeKind::group) return bounds;
-    if (shape.kind == ShapeKind::mesh) return mesh->mesh->bounds();
+    if (shape.kind == ShapeKind::mesh) return mesh->bvh.nodes.empty() ? bounds : mesh->bvh.nodes[0].bounds;
     dvec3 half = shape.half_size_m;
     if (shape.kind == ShapeKind::plane || shape.kind == ShapeKind::disk) half.z = 0;
     bounds.add(half);

@@ -10,6 +10,7 @@
 
 #include "framework/base/names.h"
 #include "framework/base/parallel.h"
+#include "framework/scene/samples.h"
 
 namespace aftershade::scene {
 
@@ -47,10 +48,10 @@ std::optional<Surface> trace_sample(const World& world, const Ray& ray, const Vi
     return trace_stochastic(world, ray, StopNumbers(seed, sample, settings.samples));
 }
 
-/// The light of each id of the set, by its number in it.
-std::vector<dvec3> shade_all(const SceneRenderer& renderer, const ShadingGrids& grids, const IdSet& set) {
+/// The light of each address.
+std::vector<dvec3> shade_all(const SceneRenderer& renderer, const ShadingGrids& grids,
+                             std::span<const std::uint32_t> ids) {
     constexpr std::size_t kAtOnce = 256;
-    const std::vector<std::uint32_t> ids = set.ids();
     std::vector<dvec3> light(ids.size());
     for_each_row(int((ids.size() + kAtOnce - 1) / kAtOnce), renderer.threads(), [&](int part) {
         const std::size_t first = std::size_t(part) * kAtOnce;
@@ -66,34 +67,36 @@ struct Traced {
     std::optional<TransparentLists> lists;
 };
 
-/// The mean over the samples; `list` is by sample, the nearest first.
+/// The mean over `count` samples, whose ends come after the list, by sample and the nearest first.
 template <class LightOf>
-dvec3 blended(std::span<const std::uint32_t> ends, std::span<const ListNode> list, const LightOf& light_of) {
+dvec3 blended(std::span<const std::uint32_t> addresses, std::span<const ListNode> list, int count,
+              const LightOf& light_of) {
     dvec3 sum(0);
     std::size_t at = 0;
-    for (std::size_t sample = 0; sample < ends.size(); ++sample) {
+    for (int sample = 0; sample < count; ++sample) {
         double through = 1;
-        for (; at < list.size() && list[at].sample == sample; ++at) {
+        for (; at < list.size() && int(list[at].sample) == sample; ++at) {
             const double opacity = double(list[at].opacity);
-            sum += through * opacity * light_of(list[at].id);
+            sum += through * opacity * light_of(addresses[at]);
             through *= 1 - opacity;
         }
-        sum += through * light_of(ends[sample]);
+        sum += through * light_of(addresses[list.size() + std::size_t(sample)]);
     }
-    return sum / double(ends.size());
+    return sum / double(count);
 }
 
-/// `ends` are what the samples ended at, `lists` what they crossed before; `set` has the ids of both.
-Image blend(const SceneRenderer& renderer, const ShadingGrids& grids, const SampleIds& ends,
-            const TransparentLists* lists, const IdSet& set) {
-    const std::vector<dvec3> light = shade_all(renderer, grids, set);
+/// `addresses` are those of what samples crossed, if there are lists, and of what they ended at.
+Image blend(const SceneRenderer& renderer, const ShadingGrids& grids, std::span<const std::uint32_t> ids,
+            const SampleIds& addresses, const TransparentLists* lists) {
+    const std::vector<dvec3> light = shade_all(renderer, grids, ids);
     Image color(renderer.width_px(), renderer.height_px(), 4);
-    const auto light_of = [&](std::uint32_t id) {
-        return id == kNoShading ? renderer.scene().background : light[set.number_of(id)];
+    const auto light_of = [&](std::uint32_t address) {
+        return address == kNoShading ? renderer.scene().background : light[address];
     };
     for_each_pixel(renderer, [&](int x, int y) {
         const std::vector<ListNode> list = lists ? lists->sorted(x, y) : std::vector<ListNode>();
-        const dvec3 mean = blended(ends.of_pixel(pixel_of(renderer, x, y)), list, light_of);
+        const dvec3 mean =
+            blended(addresses.of_pixel(pixel_of(renderer, x, y)), list, addresses.samples, light_of);
         for (int c = 0; c < 3; ++c) color.at(x, y, c) = float(mean[c]);
         color.at(x, y, 3) = 1;
     });
@@ -177,72 +180,56 @@ Image rate_image(const SceneRenderer& renderer, const std::vector<float>& of_pix
 VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
                                   const VisibilitySettings& settings, const Traced& traced,
                                   const LightResolver& resolve) {
-    const SampleIds ends{traced.ends, renderer.width_px(), renderer.height_px(), settings.samples};
-    SampleIds samples = ends;
+    SampleIds samples{traced.ends, renderer.width_px(), renderer.height_px(), settings.samples};
     AllIds all;
     if (traced.lists) {
         all = all_ids_of(renderer, traced, settings.samples);
         samples.ids = all.ids;
         samples.first = all.first;
     }
-    const CacheCounts counts = replay(samples, settings.cache);
-    const IdSet set(samples.ids, grids.id_count());
+    const CacheReplay replayed = replay(samples, settings.cache);
+    SampleIds addresses = samples;
+    addresses.ids = replayed.addresses;
     VisibilityPicture picture;
-    picture.color = traced.lists ? blend(renderer, grids, ends, &*traced.lists, set)
-                                 : resolve(renderer, grids, ends, set);
-    picture.shading_rate = rate_image(renderer, counts.of_pixel);
+    picture.color = traced.lists ? blend(renderer, grids, replayed.ids, addresses, &*traced.lists)
+                                 : resolve(renderer, grids, replayed.ids, addresses);
+    picture.shading_rate = rate_image(renderer, replayed.of_pixel);
     VisibilityReport& report = picture.report;
     report.frame = frame;
     report.samples = settings.samples;
-    report.requests = counts.requests;
-    report.shadings = counts.shadings;
+    report.requests = replayed.requests;
+    report.shadings = replayed.shadings;
     report.bytes.visibility = traced.ends.size() * kReferenceBytes;
-    report.bytes.shading = counts.shadings * kShadingBytes;
-    report.bytes.cache = counts.bytes;
+    report.bytes.shading = replayed.shadings * kShadingBytes;
+    report.bytes.cache = replayed.bytes;
     if (traced.lists) {
         report.list_nodes = traced.lists->node_count();
         report.list_overflows = traced.lists->overflows();
         report.bytes.lists = traced.lists->bytes();
     }
     report.rate.multisampled = double(triangles_of_pixels(renderer, grids, samples));
-    complete(report, counts.of_pixel, met_samples(renderer, traced, settings.samples));
+    complete(report, replayed.of_pixel, met_samples(renderer, traced, settings.samples));
     return picture;
 }
 
-/// Light at every sample.
-VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings) {
-    std::vector<dvec3> sums(pixel_count(renderer), dvec3(0));
-    std::vector<std::uint32_t> shadings(sums.size()), met(sums.size());
-    const bool sorted = settings.transparency.transparency == Transparency::sorted;
-    renderer.for_each_sample(
-        frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
-            const std::size_t pixel = pixel_of(renderer, x, y);
-            if (sorted) {
-                int own = 0;
-                sums[pixel] += world.radiance(ray, &own);
-                shadings[pixel] += std::uint32_t(own);
-                met[pixel] += own > 0 ? 1 : 0;
-                return;
-            }
-            const auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
-            sums[pixel] += surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
-            shadings[pixel] += surface ? 1 : 0;
-            met[pixel] += surface ? 1 : 0;
-        });
+VisibilityPicture render_plain(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings,
+                               const SampleLighter& light) {
+    const LitSamples lit = light(renderer, frame, settings);
     VisibilityPicture picture;
     picture.color = Image(renderer.width_px(), renderer.height_px(), 4);
-    for (std::size_t i = 0; i < sums.size(); ++i) {
+    for (std::size_t i = 0; i < lit.sums.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c)
-            picture.color.floats()[i * 4 + c] = float(sums[i][int(c)] / settings.samples);
+            picture.color.floats()[i * 4 + c] = float(lit.sums[i][int(c)] / settings.samples);
         picture.color.floats()[i * 4 + 3] = 1;
     }
-    std::vector<float> of_pixel(shadings.begin(), shadings.end());
+    std::vector<float> of_pixel(lit.shadings.begin(), lit.shadings.end());
     picture.shading_rate = rate_image(renderer, of_pixel);
     VisibilityReport& report = picture.report;
     report.frame = frame;
     report.samples = settings.samples;
-    report.requests = report.shadings = std::reduce(shadings.begin(), shadings.end(), std::uint64_t(0));
-    complete(report, std::move(of_pixel), std::reduce(met.begin(), met.end(), std::uint64_t(0)));
+    report.requests = report.shadings =
+        std::reduce(lit.shadings.begin(), lit.shadings.end(), std::uint64_t(0));
+    complete(report, std::move(of_pixel), std::reduce(lit.met.begin(), lit.met.end(), std::uint64_t(0)));
     report.bytes.shading = report.bytes.supersampled;
     return picture;
 }
@@ -299,9 +286,37 @@ std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const Shadin
     return ids;
 }
 
-Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids, const SampleIds& samples,
-                    const IdSet& set) {
-    return blend(renderer, grids, samples, nullptr, set);
+Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids,
+                    std::span<const std::uint32_t> ids, const SampleIds& addresses) {
+    return blend(renderer, grids, ids, addresses, nullptr);
+}
+
+LitSamples::LitSamples(int width_px, int height_px)
+    : sums(std::size_t(width_px) * std::size_t(height_px)), shadings(sums.size()), met(sums.size()) {}
+
+LitSamples light_samples(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings) {
+    LitSamples lit(renderer.width_px(), renderer.height_px());
+    const bool sorted = settings.transparency.transparency == Transparency::sorted;
+    renderer.for_each_sample(
+        frame, truth_of(settings), [&](int x, int y, int sample, const World& world, const Ray& ray) {
+            const std::size_t pixel = pixel_of(renderer, x, y);
+            if (sorted) {
+                int own = 0;
+                lit.sums[pixel] += world.radiance(ray, &own);
+                lit.shadings[pixel] += std::uint32_t(own);
+                lit.met[pixel] += own > 0 ? 1 : 0;
+                return;
+            }
+            auto surface = trace_sample(world, ray, settings, frame, x, y, sample);
+            if (surface)
+                surface->light_seed =
+                    light_seed(StopNumbers::pixel_seed(settings.seed, frame, x, y), std::uint32_t(sample));
+            lit.sums[pixel] +=
+                surface ? world.shade(*surface, ray.origin).color() : renderer.scene().background;
+            lit.shadings[pixel] += surface ? 1 : 0;
+            lit.met[pixel] += surface ? 1 : 0;
+        });
+    return lit;
 }
 
 TruthSettings truth_of(const VisibilitySettings& settings) {
@@ -317,7 +332,8 @@ TruthSettings truth_of(const VisibilitySettings& settings) {
 
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const VisibilityPasses& passes) {
-    if (settings.visibility != Visibility::memoised) return render_plain(renderer, frame, settings);
+    if (settings.visibility != Visibility::memoised)
+        return render_plain(renderer, frame, settings, passes.light);
     const ShadingGrids grids(renderer, frame, settings.grid);
     Traced traced;
     if (settings.transparency.transparency == Transparency::lists)

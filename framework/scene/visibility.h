@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -83,23 +84,35 @@ std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const Shadin
 using IdTracer = std::function<std::vector<std::uint32_t>(
     const SceneRenderer& renderer, const ShadingGrids& grids, int frame, const VisibilitySettings& settings)>;
 
-/// RGBA: the mean over the samples of each pixel, which is the light of the shading sample that each met, or
-/// the background. `set` has the ids of `samples`; each pixel has
-/// samples.samples of them.
-Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids, const SampleIds& samples,
-                    const IdSet& set);
+/// RGBA: the mean over the samples of each pixel, which is the light at the address that each has, or the
+/// background. `ids` are those of the shadings, by address: each is shaded once.
+Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids,
+                    std::span<const std::uint32_t> ids, const SampleIds& addresses);
 /// That, or what does the same elsewhere.
 using LightResolver = std::function<Image(const SceneRenderer& renderer, const ShadingGrids& grids,
-                                          const SampleIds& samples, const IdSet& set)>;
+                                          std::span<const std::uint32_t> ids, const SampleIds& addresses)>;
 
-/// The parts of Visibility::memoised without lists.
+/// Light at every sample, by pixel.
+struct LitSamples {
+    LitSamples(int width_px, int height_px);
+    std::vector<glm::dvec3> sums;  ///< of the samples' light
+    std::vector<std::uint32_t> shadings;
+    std::vector<std::uint32_t> met;  ///< samples that met a surface
+};
+LitSamples light_samples(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings);
+/// That, or what does the same elsewhere.
+using SampleLighter =
+    std::function<LitSamples(const SceneRenderer& renderer, int frame, const VisibilitySettings& settings)>;
+
+/// The parts of Visibility::memoised without lists, and of the others.
 struct VisibilityPasses {
     IdTracer trace = trace_ids;
     LightResolver resolve = resolve_light;
+    SampleLighter light = light_samples;
 };
 
 /// `renderer` is of a scene of meshes (triangulated()). All caches give the same picture; they change only
-/// the count. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
+/// the count, and the time. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
 /// Transparency::sorted is for the others.
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const VisibilityPasses& passes = {});

@@ -34,11 +34,12 @@ struct Surface {
     glm::dvec3 normal{0};            ///< world, unit length, for shading
     glm::dvec3 geometric_normal{0};  ///< world, unit length; both on the side that the ray came from
     glm::dvec2 uv{0};
-    bool from_behind = false;    ///< whether that is the inside, by the shape's outward normal
-    int object = -1;             ///< index into Scene::objects
-    std::uint32_t triangle = 0;  ///< of a mesh
-    double t = 0;                ///< along the ray
-    double precision = 1e-9;     ///< of the position, over the size of its coordinates
+    bool from_behind = false;                 ///< whether that is the inside, by the shape's outward normal
+    int object = -1;                          ///< index into Scene::objects
+    std::uint32_t triangle = 0;               ///< of a mesh
+    double t = 0;                             ///< along the ray
+    double precision = 1e-9;                  ///< of the position, over the size of its coordinates
+    std::optional<std::uint32_t> light_seed;  ///< of its random rays; without one, a hash of `local`
 };
 
 /// Light at a surface, as the roles of a capture have it.
@@ -119,6 +120,7 @@ private:
     void add_light(std::size_t index, const Surface& surface, const glm::dvec3* to_eye,
                    Shading& shading) const;
     double visible_part(std::size_t light, const Surface& surface) const;
+    double visible_ambient(const Surface& surface) const;
 
     const Geometry* geometry_;
     SceneState state_;

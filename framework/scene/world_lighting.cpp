@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
+#include "framework/scene/samples.h"
 #include "framework/scene/world.h"
 
 namespace aftershade::scene {
@@ -18,6 +20,20 @@ dvec3 off_surface(const Surface& surface) {
     const dvec3 size = glm::abs(surface.position);
     const double step_m = surface.precision * std::max({size.x, size.y, size.z, 1e-3});
     return surface.position + surface.geometric_normal * step_m;
+}
+
+std::uint32_t hash_of(const dvec3& position) {
+    const glm::vec3 rounded(position);
+    return pcg3d(std::bit_cast<std::uint32_t>(rounded.x), std::bit_cast<std::uint32_t>(rounded.y),
+                 std::bit_cast<std::uint32_t>(rounded.z))[0];
+}
+
+/// A rotation of +z to `axis` (Duff et al. 2017, Building an Orthonormal Basis, Revisited).
+glm::dmat3 frame_about(const dvec3& axis) {
+    const double sign = std::copysign(1.0, axis.z);
+    const double a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
+    return {dvec3(1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
+            dvec3(b, sign + axis.y * axis.y * a, -axis.y), axis};
 }
 
 using Quad = std::array<dvec3, 4>;
@@ -115,6 +131,22 @@ double World::visible_part(std::size_t index, const Surface& surface) const {
     return light_through(from, highest);
 }
 
+/// The share of the ambient light that shines through, by rays as likely as their cosine (Malley's method).
+double World::visible_ambient(const Surface& surface) const {
+    const int rays = scene().ambient_rays;
+    const std::uint32_t seed = surface.light_seed.value_or(hash_of(surface.local));
+    const glm::dmat3 frame = frame_about(surface.normal);
+    const dvec3 from = off_surface(surface);
+    double seen = 0;
+    for (int i = 0; i < rays; ++i) {
+        const glm::dvec2 on_disk =
+            on_aperture(shifted_hammersley(std::uint32_t(i), std::uint32_t(rays), seed), 0, 0);
+        const double height = std::sqrt(std::max(1 - glm::dot(on_disk, on_disk), 0.0));
+        seen += light_through(from, from + kFar_m * (frame * dvec3(on_disk, height)));
+    }
+    return seen / rays;
+}
+
 void World::add_light(std::size_t index, const Surface& surface, const dvec3* to_eye,
                       Shading& shading) const {
     const Light& light = scene().lights[index];
@@ -152,6 +184,7 @@ void World::add_light(std::size_t index, const Surface& surface, const dvec3* to
 Shading World::light(const Surface& surface, const dvec3* to_eye) const {
     Shading shading;
     shading.irradiance = scene().ambient;
+    if (scene().ambient_rays > 0) shading.irradiance *= visible_ambient(surface);
     for (std::size_t i = 0; i < state_.lights.size(); ++i) add_light(i, surface, to_eye, shading);
     return shading;
 }

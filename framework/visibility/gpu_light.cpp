@@ -52,23 +52,22 @@ struct Room {
 class LightGraph {
 public:
     LightGraph(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
-               const scene::IdSet& set, const Room& room)
+               const Room& room)
         : passes_(passes),
           scene_(make_light_scene(renderer, grids)),
-          words_(words_of(set)),
           scene_path_(renderer.scene().path.string()),
-          executor_(executor_of(passes, make_graph(room, set))) {
+          executor_(executor_of(passes, make_graph(room))) {
         shade_.world_from_camera = glm::mat4(grids.reference().camera.world_from_camera);
-        shade_.ambient = vec4(glm::vec3(renderer.scene().ambient), 0);
+        shade_.ambient = with(renderer.scene().ambient, double(renderer.scene().ambient_rays));
         shade_.size_px = {renderer.width_px(), renderer.height_px()};
         shade_.px_per_tangent = float(renderer.pixels_per_tangent(grids.reference().camera));
         shade_.node_count = std::uint32_t(scene_.nodes.size());
         shade_.surface_count = std::uint32_t(scene_.surfaces.size());
         shade_.light_count = std::uint32_t(scene_.lights.size());
-        set_scene(set);
+        set_scene();
     }
 
-    /// `ids` are those of the set from its number `first`.
+    /// `ids` are those of the shadings from address `first`.
     void shade(std::span<const std::uint32_t> ids, std::size_t first) {
         shade_.id_count = resolve_.count = std::uint32_t(ids.size());
         resolve_.first = std::uint32_t(first);
@@ -79,11 +78,12 @@ public:
     }
 
     /// RGB of the band's pixels, without what other slices add.
-    std::vector<vec4> resolve(std::span<const std::uint32_t> ids, int samples, const glm::dvec3& background) {
+    std::vector<vec4> resolve(std::span<const std::uint32_t> addresses, int samples,
+                              const glm::dvec3& background) {
         resolve_.background = vec4(glm::vec3(background), 0);
         resolve_.sample_count = std::uint32_t(samples);
-        resolve_.pixel_count = std::uint32_t(ids.size()) / resolve_.sample_count;
-        set(executor_, met_, ids);
+        resolve_.pixel_count = std::uint32_t(addresses.size()) / resolve_.sample_count;
+        set(executor_, addresses_, addresses);
         executor_.set_uniforms(kResolve, 0, bytes_of(resolve_));
         passes_.run(executor_, {kResolve, kResolve + 1});
         return values_of<vec4>(executor_, means_);
@@ -92,18 +92,7 @@ public:
 private:
     static constexpr int kShade = 0, kResolve = 1;
 
-    /// The set's bits as the shader reads them: low words first.
-    static std::vector<std::uint32_t> words_of(const scene::IdSet& set) {
-        std::vector<std::uint32_t> words;
-        words.reserve(2 * set.bits().size());
-        for (const std::uint64_t bits : set.bits()) {
-            words.push_back(std::uint32_t(bits));
-            words.push_back(std::uint32_t(bits >> 32));
-        }
-        return words;
-    }
-
-    graph::FrameGraph make_graph(const Room& room, const scene::IdSet& set) {
+    graph::FrameGraph make_graph(const Room& room) {
         graph::FrameGraph graph;
         nodes_ = graph.import_buffer("nodes", room_for(scene_.nodes));
         blockers_ = graph.import_buffer("blockers", room_for(scene_.blockers));
@@ -123,40 +112,33 @@ private:
         const graph::Written written = add_with_loops(graph, std::move(shade));
         unfinished_ = written.buffers.back();
 
-        met_ = graph.import_buffer("met", {room.pixels * room.samples * sizeof(std::uint32_t)});
-        set_ = graph.import_buffer("set", room_for(words_));
-        before_ = graph.import_buffer("before", room_for(set.before()));
+        addresses_ = graph.import_buffer("addresses", {room.pixels * room.samples * sizeof(std::uint32_t)});
         graph::Pass resolve =
             passes_.pass("visibility.resolve", visibility_resolve_shader(), group_count(room.pixels));
         resolve.uniforms = {{0, bytes_of(resolve_)}};
-        resolve.buffers = {{met_, 0, Access::read},
-                           {set_, 1, Access::read},
-                           {before_, 2, Access::read},
-                           {written.buffers[shaded], 3, Access::read},
-                           {graph.create_buffer("means", {room.pixels * sizeof(vec4)}), 4, Access::write}};
+        resolve.buffers = {{addresses_, 0, Access::read},
+                           {written.buffers[shaded], 1, Access::read},
+                           {graph.create_buffer("means", {room.pixels * sizeof(vec4)}), 2, Access::write}};
         means_ = graph.add_pass(std::move(resolve)).buffers.back();
         graph.keep(means_);
         return graph;
     }
 
-    void set_scene(const scene::IdSet& ids) {
+    void set_scene() {
         set(executor_, nodes_, scene_.nodes);
         set(executor_, blockers_, scene_.blockers);
         set(executor_, starts_, scene_.starts);
         set(executor_, surfaces_, scene_.surfaces);
         set(executor_, materials_, scene_.materials);
         set(executor_, lights_, scene_.lights);
-        set(executor_, set_, words_);
-        set(executor_, before_, ids.before());
     }
 
     Passes& passes_;
     LightScene scene_;
-    std::vector<std::uint32_t> words_;
     ShadeSettings shade_;
     ResolveSettings resolve_;
-    graph::BufferHandle nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_, met_, set_, before_,
-        means_, unfinished_;
+    graph::BufferHandle nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_, addresses_, means_,
+        unfinished_;
     std::string scene_path_;
     graph::Executor executor_;  // made of all the above
 };
@@ -171,23 +153,23 @@ void add(Image& color, int first_row, int rows, const std::vector<vec4>& means) 
 }  // namespace
 
 Image resolve_light(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
-                    const scene::SampleIds& samples, const scene::IdSet& set, std::size_t max_buffer_bytes) {
-    const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
-    const Bands bands(samples.width_px, samples.height_px,
+                    std::span<const std::uint32_t> ids, const scene::SampleIds& addresses,
+                    std::size_t max_buffer_bytes) {
+    const auto width = std::size_t(addresses.width_px), count = std::size_t(addresses.samples);
+    const Bands bands(addresses.width_px, addresses.height_px,
                       width * std::max(count * sizeof(std::uint32_t), sizeof(vec4)), 1, max_buffer_bytes);
-    const std::vector<std::uint32_t> ids = set.ids();
     const std::size_t most = std::min(max_buffer_bytes / sizeof(vec4), std::size_t(kGroup) * kMaxGroups);
     const std::size_t slice = std::clamp(ids.size(), std::size_t(1), most);
-    LightGraph graph(passes, renderer, grids, set, {slice, width * std::size_t(bands.rows), count});
-    Image color(samples.width_px, samples.height_px, 4);
+    LightGraph graph(passes, renderer, grids, {slice, width * std::size_t(bands.rows), count});
+    Image color(addresses.width_px, addresses.height_px, 4);
     std::size_t first = 0;
     do {
-        graph.shade(std::span(ids).subspan(first, std::min(slice, ids.size() - first)), first);
+        graph.shade(ids.subspan(first, std::min(slice, ids.size() - first)), first);
         const glm::dvec3 background = first == 0 ? renderer.scene().background : glm::dvec3(0);
         bands.for_each([&](int row, int rows) {
-            const auto met =
-                samples.ids.subspan(std::size_t(row) * width * count, std::size_t(rows) * width * count);
-            add(color, row, rows, graph.resolve(met, samples.samples, background));
+            const auto of_band =
+                addresses.ids.subspan(std::size_t(row) * width * count, std::size_t(rows) * width * count);
+            add(color, row, rows, graph.resolve(of_band, addresses.samples, background));
         });
         first += slice;
     } while (first < ids.size());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "framework/image/image.h"
 #include "framework/scene/scene_renderer.h"
@@ -17,7 +19,7 @@ namespace aftershade::visibility {
 /// larger pictures in bands of rows. Throws Error(ErrorKind::usage) for more than 2^20 triangles, and what
 /// gpu throws.
 Image resolve_light(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
-                    const scene::SampleIds& samples, const scene::IdSet& set,
+                    std::span<const std::uint32_t> ids, const scene::SampleIds& addresses,
                     std::size_t max_buffer_bytes = kMaxBufferBytes);
 
 }  // namespace aftershade::visibility

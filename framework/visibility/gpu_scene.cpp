@@ -44,7 +44,8 @@ void add_way(Bounds& bounds, const std::vector<scene::SceneState>& states, std::
 }
 
 GpuTriangle triangle_of(const scene::ShadingGrids::Grid& grid, const scene::SceneState& reference,
-                        std::size_t object, const std::array<dvec3, 3>& corners, double opacity) {
+                        std::size_t object, const std::array<dvec3, 3>& corners, double opacity,
+                        bool casts_shadow) {
     GpuTriangle triangle;
     triangle.corner = with(corners[0], bits(std::uint32_t(object)));
     triangle.to_second = with(corners[1] - corners[0], bits(grid.start));
@@ -53,6 +54,7 @@ GpuTriangle triangle_of(const scene::ShadingGrids::Grid& grid, const scene::Scen
         reference.camera.camera_from_world * reference.world_from_object[object];
     for (std::size_t i = 0; i < 3; ++i)
         triangle.view[i] = with(dvec3(view_from_object * dvec4(corners[i], 1)));
+    triangle.view[0].w = casts_shadow ? float(opacity) : 0;
     const glm::dmat2& cells = grid.cells_from_px;
     triangle.cells_from_px = vec4(cells[0][0], cells[0][1], cells[1][0], cells[1][1]);
     triangle.grid = vec4(float(grid.low.x), float(grid.low.y), bits(std::uint32_t(grid.size.x)),
@@ -87,6 +89,7 @@ GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::Shadi
             state_at(scene, frame, exposure.first + (exposure.last - exposure.first) * i / (kMoments - 1)));
     std::vector<Bounds> bounds;
     std::vector<GpuTriangle> triangles;
+    std::vector<std::array<std::uint32_t, 2>> sources;
     for (std::size_t object = 0; object < scene.objects.size(); ++object) {
         const int index = scene.objects[object].shape.mesh;
         if (index < 0) continue;
@@ -94,14 +97,19 @@ GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::Shadi
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             const std::array<dvec3, 3> corners = corners_of(mesh, i);
             triangles.push_back(triangle_of(grids.grids()[triangles.size()], grids.reference(), object,
-                                            corners, scene.material_of(int(object)).opacity));
+                                            corners, scene.material_of(int(object)).opacity,
+                                            scene.objects[object].casts_shadow));
+            sources.push_back({std::uint32_t(object), std::uint32_t(i)});
             Bounds& own = bounds.emplace_back();
             for (const dvec3& corner : corners) add_way(own, states, object, corner);
         }
     }
     const scene::Bvh bvh = scene::build_bvh(bounds, kLeafSize);
-    GpuScene result{gpu_nodes(bvh), {}};
-    for (const std::uint32_t item : bvh.items) result.triangles.push_back(triangles[item]);
+    GpuScene result{gpu_nodes(bvh), {}, {}};
+    for (const std::uint32_t item : bvh.items) {
+        result.triangles.push_back(triangles[item]);
+        result.sources.push_back(sources[item]);
+    }
     return result;
 }
 

@@ -33,6 +33,8 @@ struct GpuTriangle {
 struct GpuScene {
     std::vector<GpuNode> nodes;
     std::vector<GpuTriangle> triangles;  ///< as the leaves order them
+    /// The object of each, and its number among the object's triangles.
+    std::vector<std::array<std::uint32_t, 2>> sources;
 };
 
 /// The items of a leaf have three bits of their word in bvh.glsl, their index 29.

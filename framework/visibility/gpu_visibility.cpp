@@ -1,14 +1,12 @@
 #include "framework/visibility/gpu_visibility.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <string_view>
 #include <utility>
 
-#include "framework/base/parallel.h"
 #include "framework/visibility/bands.h"
 #include "framework/visibility/gpu_scene.h"
+#include "framework/visibility/sample_rays.h"
 
 namespace aftershade {
 std::string_view visibility_trace_shader();  // trace.comp
@@ -21,55 +19,10 @@ using gpu::Access;
 
 namespace {
 
-struct GpuRay {
-    vec4 origin{0};
-    vec4 direction{0};
-    vec4 stops{0};
-};
-
-struct TraceSettings {
-    glm::vec2 size_px{0};
-    float px_per_tangent = 0;
-    std::uint32_t node_count = 0;
-    std::uint32_t object_count = 0;
-    std::uint32_t pixel_count = 0;
-    std::uint32_t sample_index = 0;
-    std::uint32_t sample_count = 0;
-    std::uint32_t transparent = 0;
-    std::array<std::uint32_t, 3> unused{};
-};
-
-/// Where the sample stops at transparent surfaces, and the seed for what it crosses after four of them.
-void set_stops(GpuRay& ray, const scene::VisibilitySettings& settings, int frame, int x, int y, int sample) {
-    const std::uint32_t seed = scene::StopNumbers::pixel_seed(settings.seed, frame, x, y);
-    const scene::StopNumbers stops(seed, sample, settings.samples);
-    const std::array<double, 4>& first = stops.first();
-    ray.stops = vec4(first[0], first[1], first[2], first[3]);
-    ray.direction.w = std::bit_cast<float>(seed);
-}
-
-std::vector<GpuRay> rays_of_band(const scene::SceneRenderer& renderer, int frame,
-                                 const scene::VisibilitySettings& settings, int sample,
-                                 const std::vector<scene::World>& moments, int first_row, int rows) {
-    const scene::TruthSettings truth = truth_of(settings);
-    const bool transparent = renderer.scene().has_transparency();
-    std::vector<GpuRay> rays(std::size_t(renderer.width_px()) * std::size_t(rows));
-    for_each_row(rows, renderer.threads(), [&](int row) {
-        for (int x = 0; x < renderer.width_px(); ++x) {
-            const auto own = renderer.sample_of(frame, truth, sample, x, first_row + row, moments);
-            GpuRay& ray = rays[std::size_t(row) * std::size_t(renderer.width_px()) + std::size_t(x)];
-            ray.origin = vec4(glm::vec3(own.ray.origin), std::bit_cast<float>(std::uint32_t(own.moment)));
-            ray.direction = vec4(glm::vec3(own.ray.direction), 0);
-            if (transparent) set_stops(ray, settings, frame, x, first_row + row, sample);
-        }
-    });
-    return rays;
-}
-
 /// One pass: what one sample of each pixel of a band meets.
 class TraceGraph {
 public:
-    TraceGraph(Passes& passes, const GpuScene& scene, const TraceSettings& settings, std::size_t pixels,
+    TraceGraph(Passes& passes, const GpuScene& scene, const SampleSettings& settings, std::size_t pixels,
                std::string scene_path)
         : passes_(passes),
           settings_(settings),
@@ -121,7 +74,7 @@ private:
     }
 
     Passes& passes_;
-    TraceSettings settings_;
+    SampleSettings settings_;
     graph::BufferHandle nodes_, triangles_, moments_, rays_, ids_, unfinished_;
     std::string scene_path_;
     graph::Executor executor_;  // made of all the above
@@ -135,14 +88,9 @@ std::vector<std::uint32_t> trace_ids(Passes& passes, const scene::SceneRenderer&
                                      std::size_t max_buffer_bytes) {
     const auto width = std::size_t(renderer.width_px()), samples = std::size_t(settings.samples);
     const scene::TruthSettings truth = truth_of(settings);
-    TraceSettings values;
-    values.size_px = {renderer.width_px(), renderer.height_px()};
-    values.px_per_tangent = float(renderer.pixels_per_tangent(grids.reference().camera));
     const GpuScene scene = make_gpu_scene(renderer, grids, frame);
-    values.node_count = std::uint32_t(scene.nodes.size());
-    values.object_count = std::uint32_t(renderer.scene().objects.size());
-    values.sample_count = std::uint32_t(settings.samples);
-    values.transparent = renderer.scene().has_transparency() ? 1 : 0;
+    const SampleSettings values =
+        sample_settings(renderer, scene, grids.reference().camera, settings.samples);
     const Bands bands(renderer.width_px(), renderer.height_px(),
                       width * std::max(samples * sizeof(std::uint32_t), sizeof(GpuRay)), 1, max_buffer_bytes);
     TraceGraph graph(passes, scene, values, width * std::size_t(bands.rows), renderer.scene().path.string());

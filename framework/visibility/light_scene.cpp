@@ -101,6 +101,19 @@ void add_object(LightScene& result, std::vector<GpuBlocker>& blockers, std::vect
 
 }  // namespace
 
+std::vector<GpuMaterial> gpu_materials(const scene::Scene& scene) {
+    std::vector<GpuMaterial> materials;
+    for (const scene::Material& material : scene.materials) materials.push_back(material_of(material));
+    return materials;
+}
+
+std::vector<GpuLight> gpu_lights(const scene::Scene& scene, const scene::SceneState& now) {
+    std::vector<GpuLight> lights;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        lights.push_back(light_of(scene.lights[i], now.lights[i]));
+    return lights;
+}
+
 LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids) {
     const scene::Scene& scene = renderer.scene();
     check_triangle_count(scene, grids);
@@ -112,9 +125,8 @@ LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::S
     const scene::Bvh bvh = scene::build_bvh(bounds, kLeafSize);
     result.nodes = gpu_nodes(bvh);
     for (const std::uint32_t item : bvh.items) result.blockers.push_back(blockers[item]);
-    for (const scene::Material& material : scene.materials) result.materials.push_back(material_of(material));
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        result.lights.push_back(light_of(scene.lights[i], grids.reference().lights[i]));
+    result.materials = gpu_materials(scene);
+    result.lights = gpu_lights(scene, grids.reference());
     return result;
 }
 

@@ -54,6 +54,9 @@ struct LightScene {
     std::vector<GpuLight> lights;
 };
 
+std::vector<GpuMaterial> gpu_materials(const scene::Scene& scene);
+std::vector<GpuLight> gpu_lights(const scene::Scene& scene, const scene::SceneState& now);
+
 /// Throws Error(ErrorKind::usage) for more than 2^20 triangles.
 LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids);
 

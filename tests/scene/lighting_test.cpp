@@ -48,6 +48,40 @@ TEST(Light, ThatTouchesASurfaceGivesItNoNan) {
     }
 }
 
+/// The ambient light at the origin of a floor, seen from above, with `objects` around it.
+double ambient_at_floor(const std::string& objects, const glm::dvec3& eye) {
+    const Scene scene = scene_of(fmt::format(R"({{ "aftershade": 1, "camera": {{ "position": [0, 0, 3] }},
+        "ambient": 1, "ambient_rays": 1024, "materials": {{ "clay": {{}} }}, "objects": [ {}
+        {{ "shape": "plane", "size": [2000, 2000], "rotation": [-90, 0, 0], "material": "clay" }} ] }})",
+                                             objects));
+    const SceneRenderer renderer(scene, 1, 1, 1);
+    const World world = renderer.world_at(1, 1);
+    return world.irradiance(*world.trace({eye, -eye}, 0.5, 2)).x;
+}
+
+/// The form factors of a strip and of a ball from a point (Howell, A Catalog of Radiation Heat Transfer
+/// Configuration Factors, B-7 and B-42).
+TEST(AmbientRays, FindTheShareThatAWallABallAndAShellHide) {
+    const double height_m = 2, distance_m = 1.5;
+    EXPECT_NEAR(ambient_at_floor(R"({ "shape": "plane", "size": [4000, 4], "position": [0, 0, -1.5],
+                                      "material": "clay" },)",
+                                 {0, 1, 1}),
+                (1 + std::cos(std::atan2(height_m, distance_m))) / 2, 0.004);
+    EXPECT_NEAR(
+        ambient_at_floor(R"({ "shape": "sphere", "radius": 1, "position": [0, 2, 0], "material": "clay" },)",
+                         {0.1, 0.2, 0.9}),
+        1 - 1.0 / 4, 0.004);
+    EXPECT_EQ(ambient_at_floor(R"({ "shape": "sphere", "radius": 3, "material": "clay" },)", {0, 1, 1}), 0);
+    EXPECT_EQ(ambient_at_floor("", {0, 1, 1}), 1);
+}
+
+TEST(AmbientRays, PassWhatCastsNoShadow) {
+    EXPECT_EQ(
+        ambient_at_floor(R"({ "shape": "sphere", "radius": 3, "material": "clay", "casts_shadow": false },)",
+                         {0, 1, 1}),
+        1);
+}
+
 /// Before a cut the curves of frame 1 go on backwards: a straight line would pass 0 within the shutter.
 TEST(FirstFrameOfAShot, KeepsWhatIsPositiveAboveZero) {
     const Scene scene = scene_of(R"({ "aftershade": 1, "cuts": [1], "shutter": { "angle": 360 },

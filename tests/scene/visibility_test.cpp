@@ -99,7 +99,7 @@ TEST(ShadingCaches, CountWhatSetsOfIdsCount) {
                     all.insert(id);
                     of_tiles.insert({x / 20, y / 20, id});
                 }
-    const CacheCounts global = replay(samples, {});
+    const CacheReplay global = replay(samples, {});
     EXPECT_EQ(global.shadings, all.size());
     EXPECT_EQ(replay(samples, {ShadingCache::tile, 20}).shadings, of_tiles.size());
     EXPECT_EQ(replay(samples, {ShadingCache::sorted, 20}).shadings, of_tiles.size());
@@ -123,10 +123,28 @@ TEST(ShadingCaches, OfSomeEntriesDropWhatALineOfThemDrops) {
             line.push_back(id);
             if (line.size() > 40) line.pop_front();
         }
-        const CacheCounts counts =
+        const CacheReplay counts =
             replay({ids, 32, 32, 4}, {renews ? ShadingCache::lru : ShadingCache::fifo, 32, 40});
         EXPECT_EQ(counts.shadings, misses) << renews;
         EXPECT_EQ(counts.requests, ids.size());
+    }
+}
+
+TEST(ShadingCaches, GiveEachSampleAShadingOfItsOwnIdThatTheyHaveNotDropped) {
+    std::vector<std::uint32_t> ids(32 * 32 * 4);
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        ids[i] = i % 11 == 0 ? kNoShading : std::uint32_t((i * 2654435761u >> 7) % 97);
+    for (const ShadingCache cache : {ShadingCache::global, ShadingCache::tile, ShadingCache::sorted,
+                                     ShadingCache::lru, ShadingCache::fifo}) {
+        const CacheReplay replayed = replay({ids, 32, 32, 4}, {cache, 16, 40});
+        EXPECT_EQ(replayed.ids.size(), replayed.shadings);
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            const std::uint32_t address = replayed.addresses[i];
+            ASSERT_EQ(address == kNoShading ? kNoShading : replayed.ids.at(address), ids[i]) << i;
+        }
+        const std::set<std::uint32_t> distinct(replayed.ids.begin(), replayed.ids.end());
+        EXPECT_EQ(distinct.size(), 97);
+        EXPECT_EQ(distinct.size() == replayed.ids.size(), cache == ShadingCache::global);
     }
 }
 
@@ -173,6 +191,23 @@ TEST(Visibility, ShowsWhatLightAtEverySampleShowsWhereItHangsOnNeitherViewNorTim
     EXPECT_DOUBLE_EQ(plain.report.rate.of_covered_pixels, 32);
 }
 
+TEST(Visibility, FindsTheSameAmbientLightByFewShadingSamplesAndByAll) {
+    Scene scene = scene_of(R"({ "aftershade": 1, "size": [64, 36], "ambient": 0.8, "ambient_rays": 16,
+        "camera": { "position": [0, 0.6, 3], "target": [0, 0.2, 0], "focus_distance": 3, "f_number": 0.3 },
+        "materials": { "clay": { "albedo": 0.7, "specular": 0 } },
+        "objects": [ { "shape": "plane", "size": [6, 6], "rotation": [-90, 0, 0], "material": "clay" },
+                     { "shape": "box", "size": [1, 1, 1], "position": [0, 0.5, 0], "rotation": [0, 20, 0],
+                       "material": "clay" } ] })");
+    VisibilitySettings settings = with_samples(16);
+    const VisibilityPicture memoised = picture_of(scene, 1, settings);
+    settings.visibility = Visibility::supersampled;
+    const VisibilityPicture plain = picture_of(scene, 1, settings);
+    EXPECT_LT(memoised.report.shadings * 8, plain.report.shadings);
+    EXPECT_GT(psnr_db(memoised.color, plain.color), 38);
+    scene.ambient_rays = 0;
+    EXPECT_LT(psnr_db(picture_of(scene, 1, settings).color, plain.color), 25);
+}
+
 TEST(Visibility, TakesTheSamplesOfTheTruth) {
     Scene scene = shipped_scene("bats");
     scene.width_px = 96;
@@ -186,6 +221,27 @@ TEST(Visibility, TakesTheSamplesOfTheTruth) {
     const Image expected = SceneRenderer(scene, 96, 54, 2).render_truth(6, truth);
     const Image found = picture_of(scene, 6, settings).color;
     EXPECT_TRUE(std::equal(expected.floats().begin(), expected.floats().end(), found.floats().begin()));
+}
+
+TEST(Visibility, IsTheSameWithAnyCache) {
+    Scene scene = shipped_scene("panes");
+    scene.width_px = 64;
+    scene.height_px = 36;
+    scene.ambient_rays = 4;
+    for (const Transparency transparency : {Transparency::stochastic, Transparency::lists}) {
+        VisibilitySettings settings = with_samples(8);
+        settings.transparency.transparency = transparency;
+        const VisibilityPicture all = picture_of(scene, 4, settings);
+        settings.cache.entries = 16;
+        for (const ShadingCache cache :
+             {ShadingCache::tile, ShadingCache::sorted, ShadingCache::lru, ShadingCache::fifo}) {
+            settings.cache.cache = cache;
+            const VisibilityPicture found = picture_of(scene, 4, settings);
+            EXPECT_GT(found.report.shadings, all.report.shadings);
+            EXPECT_TRUE(std::equal(all.color.floats().begin(), all.color.floats().end(),
+                                   found.color.floats().begin()));
+        }
+    }
 }
 
 TEST(Visibility, IsTheSameOnAnyNumberOfThreads) {

@@ -34,10 +34,10 @@ Pictures pictures(gpu::Context& context, const scene::Scene& scene, int frame, i
     scene::VisibilitySettings settings;
     settings.samples = samples;
     const std::vector<std::uint32_t> ids = scene::trace_ids(renderer, grids, frame, settings);
-    const scene::SampleIds met{ids, size_px.x, size_px.y, samples};
-    const scene::IdSet set(ids, grids.id_count());
-    return {scene::resolve_light(renderer, grids, met, set),
-            resolve_light(passes, renderer, grids, met, set, max_buffer_bytes)};
+    const scene::CacheReplay kept = scene::replay({ids, size_px.x, size_px.y, samples}, {});
+    const scene::SampleIds addresses{kept.addresses, size_px.x, size_px.y, samples};
+    return {scene::resolve_light(renderer, grids, kept.ids, addresses),
+            resolve_light(passes, renderer, grids, kept.ids, addresses, max_buffer_bytes)};
 }
 
 /// The share of pixels in which a channel differs by more than a thousandth of its value and of 0.1.
@@ -100,6 +100,16 @@ TEST_P(LightOn, EveryKindOfLightIsTheCpus) {
         const auto largest = std::ranges::max_element(both.on_gpu.floats());
         EXPECT_GT(*largest, 0.2f) << light;
     }
+}
+
+TEST_P(LightOn, FindsWhatHidesTheAmbientLightByTheRaysOfTheCpu) {
+    scene::Scene scene = room_under("");
+    scene.ambient = glm::dvec3(0.8);
+    scene.ambient_rays = 16;
+    const Pictures both = pictures(context(), scene, 1, 1);
+    EXPECT_LT(other_pixels(both), 0.005);
+    scene.ambient_rays = 0;
+    EXPECT_GT(other_pixels({both.on_cpu, pictures(context(), scene, 1, 1).on_gpu}), 0.1);
 }
 
 TEST_P(LightOn, IsTheMeanOverTheSamplesOfAPixel) {

@@ -1,0 +1,150 @@
+#include "framework/visibility/gpu_samples.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/scene/shading_grid.h"
+#include "framework/visibility/light_scene.h"
+#include "framework/visibility/sample_rays.h"
+
+namespace aftershade {
+std::string_view visibility_light_samples_shader();  // light_samples.comp
+}  // namespace aftershade
+
+namespace aftershade::visibility {
+
+using glm::vec4;
+using gpu::Access;
+
+namespace {
+
+/// What light needs of a triangle's corners.
+struct GpuCorners {
+    std::array<vec4, 3> normals{};
+    vec4 v_material{0};
+};
+
+std::vector<GpuCorners> corners_of(const scene::Scene& scene, const GpuScene& triangles) {
+    std::vector<GpuCorners> corners;
+    for (const auto& [object, triangle] : triangles.sources) {
+        const scene::Object& of = scene.objects[object];
+        const scene::Mesh& mesh = scene.meshes[std::size_t(of.shape.mesh)];
+        GpuCorners& own = corners.emplace_back();
+        for (int i = 0; i < 3; ++i) {
+            const scene::Vertex& vertex = mesh.vertices[mesh.triangles[triangle][std::size_t(i)]];
+            own.normals[std::size_t(i)] = with(vertex.normal, vertex.uv.x);
+            own.v_material[i] = float(vertex.uv.y);
+        }
+        own.v_material.w = std::bit_cast<float>(std::uint32_t(of.material));
+    }
+    return corners;
+}
+
+/// The lights at all moments, those of a moment side by side.
+std::vector<GpuLight> lights_at(const std::vector<scene::World>& moments) {
+    std::vector<GpuLight> lights;
+    for (const scene::World& world : moments)
+        for (const GpuLight& light : gpu_lights(world.scene(), world.state())) lights.push_back(light);
+    return lights;
+}
+
+/// One pass: the light of one sample of each pixel of a band, added to that of the samples before it.
+class LightSamplesGraph {
+public:
+    LightSamplesGraph(Passes& passes, const scene::Scene& scene, const GpuScene& triangles,
+                      const SampleSettings& settings, std::size_t pixels)
+        : passes_(passes),
+          settings_(settings),
+          scene_path_(scene.path.string()),
+          materials_(gpu_materials(scene)),
+          corners_(corners_of(scene, triangles)),
+          executor_(executor_of(passes, make_graph(triangles, pixels))) {
+        set(executor_, nodes_in_, triangles.nodes);
+        set(executor_, triangles_in_, triangles.triangles);
+        set(executor_, materials_in_, materials_);
+        set(executor_, corners_in_, corners_);
+    }
+
+    void light(int sample, const std::vector<scene::World>& moments, const std::vector<GpuRay>& rays) {
+        settings_.pixel_count = std::uint32_t(rays.size());
+        settings_.sample_index = std::uint32_t(sample);
+        set(executor_, moments_in_, make_moments(moments));
+        set(executor_, lights_in_, lights_at(moments));
+        set(executor_, rays_in_, rays);
+        executor_.set_uniforms(0, 0, bytes_of(settings_));
+        passes_.run(executor_);
+        check_loops(executor_, unfinished_, scene_path_);
+    }
+    /// Of each pixel of the band: the sum of its samples' light, and the number of those that met something.
+    std::vector<vec4> sums() { return values_of<vec4>(executor_, sums_); }
+
+private:
+    graph::FrameGraph make_graph(const GpuScene& triangles, std::size_t pixels) {
+        constexpr std::size_t kMoments = scene::SceneRenderer::kMomentsOfSample;
+        graph::FrameGraph graph;
+        nodes_in_ = graph.import_buffer("nodes", room_for(triangles.nodes));
+        triangles_in_ = graph.import_buffer("triangles", room_for(triangles.triangles));
+        moments_in_ = graph.import_buffer("moments", {kMoments * settings_.object_count * 3 * sizeof(vec4)});
+        rays_in_ = graph.import_buffer("rays", {pixels * sizeof(GpuRay)});
+        materials_in_ = graph.import_buffer("materials", room_for(materials_));
+        lights_in_ = graph.import_buffer("lights",
+                                         {kMoments * std::max(settings_.light_count, 1u) * sizeof(GpuLight)});
+        corners_in_ = graph.import_buffer("corners", room_for(corners_));
+        graph::Pass pass =
+            passes_.pass("visibility.light_samples", visibility_light_samples_shader(), group_count(pixels));
+        pass.uniforms = {{0, bytes_of(settings_)}};
+        const graph::BufferHandle read[] = {nodes_in_,     triangles_in_, moments_in_, rays_in_,
+                                            materials_in_, lights_in_,    corners_in_};
+        for (int i = 0; i < int(std::size(read)); ++i) pass.buffers.push_back({read[i], i, Access::read});
+        // It also reads what its run for the sample before has left there, which is not of this frame.
+        pass.buffers.push_back({graph.create_buffer("sums", {pixels * sizeof(vec4)}), 7, Access::write});
+        const std::size_t sums = pass.buffers.size() - 1;
+        const graph::Written written = add_with_loops(graph, std::move(pass));
+        sums_ = written.buffers[sums];
+        unfinished_ = written.buffers.back();
+        graph.keep(sums_);
+        return graph;
+    }
+
+    Passes& passes_;
+    SampleSettings settings_;
+    std::string scene_path_;
+    std::vector<GpuMaterial> materials_;
+    std::vector<GpuCorners> corners_;
+    graph::BufferHandle nodes_in_, triangles_in_, moments_in_, rays_in_, materials_in_, lights_in_,
+        corners_in_, sums_, unfinished_;
+    graph::Executor executor_;  // made of all the above
+};
+
+}  // namespace
+
+scene::LitSamples light_samples(Passes& passes, const scene::SceneRenderer& renderer, int frame,
+                                const scene::VisibilitySettings& settings, std::size_t max_buffer_bytes) {
+    const auto width = std::size_t(renderer.width_px());
+    const scene::TruthSettings truth = truth_of(settings);
+    const scene::ShadingGrids grids(renderer, frame, {});
+    const GpuScene triangles = make_gpu_scene(renderer, grids, frame);
+    const SampleSettings values =
+        sample_settings(renderer, triangles, grids.reference().camera, settings.samples);
+    const Bands bands(renderer.width_px(), renderer.height_px(), width * sizeof(GpuRay), 1, max_buffer_bytes);
+    LightSamplesGraph graph(passes, renderer.scene(), triangles, values, width * std::size_t(bands.rows));
+    scene::LitSamples lit(renderer.width_px(), renderer.height_px());
+    bands.for_each([&](int first, int rows) {
+        for (int sample = 0; sample < settings.samples; ++sample) {
+            const std::vector<scene::World> worlds = renderer.moments_of(frame, truth, sample);
+            graph.light(sample, worlds, rays_of_band(renderer, frame, settings, sample, worlds, first, rows));
+        }
+        const std::vector<vec4> sums = graph.sums();
+        for (std::size_t i = 0; i < width * std::size_t(rows); ++i) {
+            const std::size_t pixel = std::size_t(first) * width + i;
+            lit.sums[pixel] = glm::dvec3(sums[i]);
+            lit.shadings[pixel] = lit.met[pixel] = std::uint32_t(sums[i].w);
+        }
+    });
+    return lit;
+}
+
+}  // namespace aftershade::visibility

@@ -1,0 +1,44 @@
+// Rays of visibility samples as rays.glsl reads them; for the sources of this folder.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "framework/scene/scene_renderer.h"
+#include "framework/scene/visibility.h"
+#include "framework/visibility/gpu_scene.h"
+
+namespace aftershade::visibility {
+
+struct GpuRay {
+    glm::vec4 origin{0};
+    glm::vec4 direction{0};
+    glm::vec4 stops{0};
+};
+
+struct SampleSettings {
+    glm::vec2 size_px{0};
+    float px_per_tangent = 0;
+    std::uint32_t node_count = 0;
+    std::uint32_t object_count = 0;
+    std::uint32_t pixel_count = 0;
+    std::uint32_t sample_index = 0;
+    std::uint32_t sample_count = 0;
+    std::uint32_t transparent = 0;
+    std::uint32_t light_count = 0;
+    std::uint32_t unused[2] = {};
+    glm::vec4 ambient{0};
+    glm::vec4 background{0};
+};
+
+/// All but the pixels and the number of the sample.
+SampleSettings sample_settings(const scene::SceneRenderer& renderer, const GpuScene& scene,
+                               const scene::CameraState& reference, int samples);
+
+/// Of sample `sample` of the pixels of some rows. `moments` are those of the sample.
+std::vector<GpuRay> rays_of_band(const scene::SceneRenderer& renderer, int frame,
+                                 const scene::VisibilitySettings& settings, int sample,
+                                 const std::vector<scene::World>& moments, int first_row, int rows);
+
+}  // namespace aftershade::visibility
