@@ -110,6 +110,24 @@ TEST(OcioView, FindsHowEachDisplayIsEncoded) {
         << "a LUT";
 }
 
+TEST(OcioView, TakesTheEncodingOfAViewByALutFromItsDisplaysSpaceOrName) {
+    const StudioConfig studio;
+    const auto config = studio.config()->createEditableCopy();
+    for (const char* display : {"sRGB", "Rec.2100-PQ - Display"})
+        config->addDisplayView(display, "Film", "cube", "");
+    config->addDisplayView("sRGB", "Numbers", "Raw", "");
+    const std::string path = studio.folder() / "displays.ocio";
+    std::ofstream(path) << *config;
+    const Capture capture = make_capture({.width = 4, .height = 4});
+    const auto encoding = [&](const std::string& display, const std::string& view) {
+        return run_step("ocio_view", capture, params_of(path, display, view, R"(, "source": "lin_rec709")"))
+            .display_encoding;
+    };
+    EXPECT_EQ(encoding("sRGB", "Film"), kSrgbDisplay);
+    EXPECT_EQ(encoding("Rec.2100-PQ - Display", "Film").curve, ColorEncoding::Curve::pq);
+    EXPECT_EQ(encoding("sRGB", "Numbers").curve, ColorEncoding::Curve::unknown) << "not colours";
+}
+
 TEST(OcioView, EqualsOpenColorIosProcessorForAViewByALutAndForLooks) {
     const StudioConfig studio;
     const auto config = studio.config();
