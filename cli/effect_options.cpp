@@ -1,13 +1,13 @@
 #include "cli/effect_options.h"
 
 #include <CLI/CLI.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include "framework/base/data_path.h"
 #include "framework/base/path_bounds.h"
 #include "framework/color/color_request.h"
+#include "framework/color/config_variable.h"
 
 namespace aftershade::cli {
 
@@ -25,7 +25,7 @@ void add_ocio_option(CLI::App& app) {
             const bool is_path = !is_config_address(config);
             if (std::error_code failure; is_path && !std::filesystem::is_regular_file(config, failure))
                 throw CLI::ValidationError("--ocio", "no file '" + config + "'");
-            setenv("OCIO", is_path ? std::filesystem::absolute(config).c_str() : config.c_str(), 1);
+            choose_config(is_path ? std::filesystem::absolute(config).string() : config);
         },
         "OpenColorIO config of steps that name none (default: $OCIO, else the built-in one)");
 }

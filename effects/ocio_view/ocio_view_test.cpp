@@ -3,6 +3,8 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -59,6 +61,31 @@ TEST(OcioView, EqualsOpenColorIosProcessorForEveryViewOfTheBuiltInConfig) {
     EXPECT_EQ(views, 13);
 }
 
+TEST(OcioView, EqualsTheProcessorForNumbersFarFromLightToo) {
+    constexpr float kNumbers[] = {0.0f,   -0.0f, 1e-38f,    -1e-38f,  3e-8f,
+                                  -0.02f, -7.0f, -65504.0f, 65504.0f, 1e9f};
+    constexpr int kCount = int(std::size(kNumbers));
+    Image light(kCount, kCount, 4);
+    for (int y = 0; y < kCount; ++y)
+        for (int x = 0; x < kCount; ++x) {
+            light.at(x, y, 0) = kNumbers[x];
+            light.at(x, y, 1) = light.at(x, y, 3) = 1;
+            light.at(x, y, 2) = kNumbers[y];
+        }
+    const auto config = StudioConfig::builtin();
+    const auto transform = ocio::DisplayViewTransform::Create();
+    transform->setSrc("lin_rec709");
+    transform->setDisplay("sRGB - Display");
+    transform->setView("ACES 1.0 - SDR Video");
+    const std::string params = params_of("", "sRGB - Display", "ACES 1.0 - SDR Video");
+    EXPECT_LT(largest_error(drawn("ocio_view", light, params, "display"),
+                            by_cpu(light, config->getProcessor(transform)), Measure::display),
+              kDisplayLimit);
+    light.at(0, 0, 0) = light.at(0, 0, 1) = light.at(0, 0, 2) = std::numeric_limits<float>::infinity();
+    const Image bright = drawn("ocio_view", light, params, "display");
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(bright.at(0, 0, c) >= 0 && bright.at(0, 0, c) <= 1);
+}
+
 TEST(OcioView, FindsHowEachDisplayIsEncoded) {
     using Curve = ColorEncoding::Curve;
     const Chromaticities wide = *color_space_primaries("rec2020");
@@ -81,6 +108,24 @@ TEST(OcioView, FindsHowEachDisplayIsEncoded) {
         run_step("ocio_view", capture, params_of(studio.path(), "Monitor", "Film")).display_encoding.curve,
         Curve::unknown)
         << "a LUT";
+}
+
+TEST(OcioView, TakesTheEncodingOfAViewByALutFromItsDisplaysSpaceOrName) {
+    const StudioConfig studio;
+    const auto config = studio.config()->createEditableCopy();
+    for (const char* display : {"sRGB", "Rec.2100-PQ - Display"})
+        config->addDisplayView(display, "Film", "cube", "");
+    config->addDisplayView("sRGB", "Numbers", "Raw", "");
+    const std::string path = studio.folder() / "displays.ocio";
+    std::ofstream(path) << *config;
+    const Capture capture = make_capture({.width = 4, .height = 4});
+    const auto encoding = [&](const std::string& display, const std::string& view) {
+        return run_step("ocio_view", capture, params_of(path, display, view, R"(, "source": "lin_rec709")"))
+            .display_encoding;
+    };
+    EXPECT_EQ(encoding("sRGB", "Film"), kSrgbDisplay);
+    EXPECT_EQ(encoding("Rec.2100-PQ - Display", "Film").curve, ColorEncoding::Curve::pq);
+    EXPECT_EQ(encoding("sRGB", "Numbers").curve, ColorEncoding::Curve::unknown) << "not colours";
 }
 
 TEST(OcioView, EqualsOpenColorIosProcessorForAViewByALutAndForLooks) {

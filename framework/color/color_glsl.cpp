@@ -1,6 +1,7 @@
 #include "framework/color/color_glsl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <regex>
 #include <string_view>
@@ -13,7 +14,7 @@ namespace aftershade {
 namespace {
 
 constexpr std::string_view kTexel = R"(vec3 $texel(int i) {
-    return texelFetch($table, ivec2((i + $first) % $row, (i + $first) / $row), 0).rgb;
+    return texelFetch($table, ivec2((i + $first) & ($row - 1), (i + $first) >> 12), 0).rgb;
 }
 )";
 
@@ -53,6 +54,17 @@ constexpr std::string_view kTetrahedral = R"(    bool xy = f.x >= f.y, yz = f.y 
         + (middle - least) * $texel(low + two) + least * $texel(low + 1 + $width + $layer);
 )";
 
+/// The places are numbers' bits, which are logarithms of their sizes by powers of 2, and straight between
+/// them.
+constexpr std::string_view kBitCurve = R"(float $at(float x, int first) {
+    uint bits = floatBitsToUint(x);
+    int i = int(bits >> $shift) + first;
+    vec2 line = texelFetch($table, ivec2(i & ($row - 1), i >> 12), 0).rg;
+    return line.x + line.y * float(bits & ((1u << $shift) - 1u));
+}
+vec3 $name(vec3 rgb) { return vec3($at(rgb.r, $red), $at(rgb.g, $green), $at(rgb.b, $blue)); }
+)";
+
 std::string functions_of(const ShaderLut& lut, const std::string& table, std::size_t first) {
     const std::map<std::string, std::string> values = {{"texel", lut.sampler + "_texel"},
                                                        {"curve", lut.sampler + "_between"},
@@ -89,9 +101,33 @@ std::string glsl_with_table(std::string text, const std::vector<ShaderLut>& luts
         text = std::regex_replace(text, std::regex("uniform sampler[123]D " + lut.sampler + ";"), "");
         text = std::regex_replace(text, std::regex("texture\\(" + lut.sampler + ", "), lut.sampler + "_at(");
     }
-    constexpr std::size_t kRowFloats = std::size_t(kColorTableRow) * 4;
-    texels.resize(std::max<std::size_t>((texels.size() + kRowFloats - 1) / kRowFloats, 1) * kRowFloats);
     return functions + text;
+}
+
+std::string glsl_of_curve(const BitCurve& curve, const std::string& name, const std::string& table,
+                          std::vector<float>& texels) {
+    const std::size_t first = texels.size() / 4;
+    for (std::size_t i = 0; i < curve.values.size(); i += 2)
+        texels.insert(texels.end(), {curve.values[i], std::ldexp(curve.values[i + 1], -curve.shift), 0, 1});
+    const auto start = [&](std::size_t channel) {
+        return std::to_string(first + (curve.is_common() ? 0 : channel * curve.size()));
+    };
+    return filled(kBitCurve, {{"name", name},
+                              {"at", name + "_at"},
+                              {"table", table},
+                              {"row", std::to_string(kColorTableRow)},
+                              {"shift", std::to_string(curve.shift)},
+                              {"red", start(0)},
+                              {"green", start(1)},
+                              {"blue", start(2)}});
+}
+
+std::vector<float> table_of(const std::vector<float>& texels, int channels) {
+    const std::size_t count = texels.size() / 4, row = kColorTableRow;
+    std::vector<float> table(std::max<std::size_t>((count + row - 1) / row, 1) * row * std::size_t(channels));
+    for (std::size_t i = 0; i < count; ++i)
+        std::copy_n(&texels[i * 4], channels, &table[i * std::size_t(channels)]);
+    return table;
 }
 
 }  // namespace aftershade

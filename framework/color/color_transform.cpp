@@ -1,10 +1,13 @@
 #include "framework/color/color_transform.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "framework/color/color_glsl.h"
 #include "framework/color/ocio_config.h"
 #include "framework/color/ocio_encoding.h"
+#include "framework/color/ocio_parts.h"
+#include "framework/document/glsl_text.h"
 
 namespace aftershade {
 
@@ -48,7 +51,7 @@ ocio::ConstProcessorRcPtr with_plain_cubes(const ocio::ConstConfigRcPtr& config,
 ocio::GpuShaderDescRcPtr shader_of(const ocio::ConstProcessorRcPtr& processor, const std::string& function) {
     ocio::GpuShaderDescRcPtr shader = ocio::GpuShaderDesc::CreateShaderDesc();
     shader->setLanguage(ocio::GPU_LANGUAGE_GLSL_4_0);
-    shader->setFunctionName((function + "_ocio").c_str());
+    shader->setFunctionName(function.c_str());
     shader->setResourcePrefix((function + "_").c_str());
     processor->getDefaultGPUProcessor()->extractGpuShaderInfo(shader);
     return shader;
@@ -94,35 +97,59 @@ bool is_tetrahedral(const ocio::GpuShaderDesc& shader, unsigned index) {
     return interpolation == ocio::INTERP_TETRAHEDRAL;
 }
 
-/// The function that shaders call, around OpenColorIO's. A config's light is the capture's where no space is
-/// said.
-std::string wrapper_of(const ColorRequest& request) {
+/// The function that shaders call, around the parts' calls. A config's light is the capture's where no space
+/// is said.
+std::string wrapper_of(const ColorRequest& request, const std::string& calls) {
     const bool takes_light = !request.is_file && request.word("source").empty();
     const bool gives_light = !request.is_file && !request.is_view() && request.word("destination").empty();
     const bool has_light_before = request.inverse ? gives_light : takes_light;
     const bool has_light_after = request.inverse ? takes_light : gives_light;
-    return "vec3 " + request.function + "(vec3 rgb) { return " +
-           (has_light_after ? "inverse(frame.rec709_from_color) * " : "") + request.function + "_ocio(vec4(" +
-           (has_light_before ? "frame.rec709_from_color * rgb" : "rgb") + ", 1.0)).rgb; }\n";
+    return "vec3 " + request.function + "(vec3 rgb) {\n" +
+           (has_light_before ? "    rgb = frame.rec709_from_color * rgb;\n" : "") + calls + "    return " +
+           (has_light_after ? "inverse(frame.rec709_from_color) * " : "") + "rgb;\n}\n";
+}
+
+/// OpenColorIO's text of a part, with its LUTs in the table; nullopt where it has a form that there is no
+/// place for.
+std::optional<std::string> text_of_part(const ocio::ConstConfigRcPtr& config,
+                                        const ocio::ConstProcessorRcPtr& processor, const std::string& name,
+                                        const std::string& table, std::vector<float>& texels) {
+    const auto given = shader_of(processor, name);
+    const auto shader = shader_of(with_plain_cubes(config, processor), name);
+    if (shader->getNumUniforms() > 0 || given->getNum3DTextures() != shader->getNum3DTextures())
+        return std::nullopt;
+    std::vector<ShaderLut> luts;
+    for (unsigned i = 0; i < shader->getNumTextures(); ++i) luts.push_back(curve_of(*shader, i));
+    for (unsigned i = 0; i < shader->getNum3DTextures(); ++i)
+        luts.push_back(cube_of(*shader, i, is_tetrahedral(*given, i)));
+    return glsl_with_table(shader->getShaderText(), luts, table, texels);
 }
 
 std::variant<ColorTransform, ColorFault> transform_of(const ocio::ConstConfigRcPtr& config,
                                                       const ocio::ConstProcessorRcPtr& processor,
                                                       const ColorRequest& request) {
-    const auto given = shader_of(processor, request.function);
-    const auto shader = shader_of(with_plain_cubes(config, processor), request.function);
-    if (shader->getNumUniforms() > 0 || given->getNum3DTextures() != shader->getNum3DTextures())
-        return ColorFault{
-            "", "OpenColorIO " + std::string(ocio::GetVersion()) +
-                    " gives this transform a form that the program cannot take: bake it into a LUT"};
-    std::vector<ShaderLut> luts;
-    for (unsigned i = 0; i < shader->getNumTextures(); ++i) luts.push_back(curve_of(*shader, i));
-    for (unsigned i = 0; i < shader->getNum3DTextures(); ++i)
-        luts.push_back(cube_of(*shader, i, is_tetrahedral(*given, i)));
     ColorTransform transform;
-    transform.glsl =
-        glsl_with_table(shader->getShaderText(), luts, request.function + "_table", transform.texels) +
-        wrapper_of(request);
+    const std::string table = request.function + "_table";
+    std::vector<float> texels;
+    std::string calls;
+    int parts = 0;
+    transform.channels = 2;
+    for (const TransformPart& part : parts_of(config, processor, request.is_view())) {
+        const std::string name = request.function + "_" + std::to_string(parts++);
+        const bool is_ours = part.curve || !part.text.empty();
+        const auto text = part.curve ? glsl_of_curve(*part.curve, name, table, texels)
+                          : is_ours  ? filled(part.text, {{"name", name}})
+                                     : text_of_part(config, part.processor, name, table, texels);
+        if (!text)
+            return ColorFault{
+                "", "OpenColorIO " + std::string(ocio::GetVersion()) +
+                        " gives this transform a form that the program cannot take: bake it into a LUT"};
+        if (text->find(table) != std::string::npos && !part.curve) transform.channels = 4;
+        transform.glsl += *text;
+        calls += is_ours ? "    rgb = " + name + "(rgb);\n" : "    rgb = " + name + "(vec4(rgb, 1.0)).rgb;\n";
+    }
+    transform.texels = table_of(texels, transform.channels);
+    transform.glsl += wrapper_of(request, calls);
     const auto metadata = processor->getProcessorMetadata();
     for (int i = 0; i < metadata->getNumFiles(); ++i) transform.files.emplace_back(metadata->getFile(i));
     return transform;

@@ -14,7 +14,8 @@ namespace aftershade {
 struct ColorTransform {
     /// Declares the sampler2D "<function>_table", which only texelFetch reads, and `vec3 function(vec3 rgb)`.
     std::string glsl;
-    std::vector<float> texels;  ///< whole rows of kColorTableRow texels, RGBA
+    std::vector<float> texels;  ///< whole rows of kColorTableRow texels
+    int channels = 4;           ///< of a texel: 4, or 2 where it has curves alone, which are faster to fetch
     std::vector<std::filesystem::path>
         files;  ///< the config and the LUTs, or the transform, that it was made of
     /// How its results are encoded: for the view's display, or as the destination; unknown also for a file.

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "framework/base/diagnostics.h"
+#include "framework/color/config_variable.h"
 #include "framework/image/color_space.h"
 
 namespace aftershade {
@@ -196,11 +197,11 @@ ColorFault fault_of_config(const OcioConfig& config, const ocio::Exception& erro
 std::variant<OcioConfig, ColorFault> open_config(std::string path) {
     static std::once_flag quiet;
     std::call_once(quiet, [] { ocio::SetLoggingLevel(ocio::LOGGING_LEVEL_NONE); });
-    const char* const variable = std::getenv("OCIO");
+    const char* const variable = std::getenv(kConfigVariable);
     const bool is_of_variable = path.empty() && variable && *variable;
     if (is_of_variable) path = variable;
     OcioConfig config{nullptr, path.empty() ? "the built-in config" : "the config '" + path + "'", {}};
-    if (is_of_variable) config.name += " of $OCIO";
+    if (is_of_variable && !std::getenv(kConfigIsOfOption)) config.name += " of $OCIO";
     const bool is_file = !path.empty() && !is_config_address(path);
     if (std::error_code failure; is_file && !fs::is_regular_file(path, failure))
         return ColorFault{"", config.name + " does not exist, or is not a file"};

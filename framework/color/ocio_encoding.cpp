@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <vector>
+
+#include "framework/image/luminance.h"
 
 namespace aftershade {
 
@@ -54,11 +57,12 @@ std::optional<ColorEncoding> curve_of(const Probe& probe, double white) {
     return std::nullopt;
 }
 
-/// HLG's display raises the scene's luminance to 1.2, ITU-R BT.2100-2, table 5, and scales its colours with
-/// it.
+/// HLG's display raises the scene's luminance to kHlgGamma, and scales its colours with it.
 double without_system_gamma(const Light& light, const Light& white) {
-    const auto luminance = [](const Light& of) { return 0.2126 * of[0] + 0.7152 * of[1] + 0.0722 * of[2]; };
-    return std::pow(luminance(light) / luminance(white), 1 / 1.2 - 1);
+    const auto luminance = [](const Light& of) {
+        return std::inner_product(of.begin(), of.end(), kRec709Luminance.begin(), 0.0);
+    };
+    return std::pow(luminance(light) / luminance(white), 1 / kHlgGamma - 1);
 }
 
 bool are_near(const ColorMatrix& a, const ColorMatrix& b) {
@@ -115,6 +119,21 @@ std::optional<ColorEncoding> encoding_of_space(const OcioConfig& open, const std
     return encoding;
 }
 
+namespace {
+
+/// Of a view's space that is no curve and matrix, such as a LUT: its numbers are for the display all the
+/// same, which has a space of its name, or a name that is known.
+std::optional<ColorEncoding> encoding_of_display(const OcioConfig& open, const std::string& display,
+                                                 const std::string& space_of_view) {
+    const auto space = open.config->getColorSpace(space_of_view.c_str());
+    if (!space || space->isData()) return std::nullopt;
+    if (open.config->getColorSpace(display.c_str())) return encoding_of_space(open, display);
+    auto encoding = find_color_encoding(display);
+    return encoding && encoding->is_color() && !encoding->is_light() ? encoding : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<ColorEncoding> encoding_of_result(const OcioConfig& config, const ColorRequest& request) {
     if (request.inverse) return std::nullopt;
     if (!request.is_view()) return encoding_of_space(config, request.word("destination"));
@@ -122,8 +141,10 @@ std::optional<ColorEncoding> encoding_of_result(const OcioConfig& config, const 
     std::string display = request.word("display"), view = request.word("view");
     if (display.empty() && !names.views.empty()) display = names.views.front().first;
     if (view.empty()) view = config.config->getDefaultView(display.c_str());
-    const std::string space = config.config->getDisplayViewColorSpaceName(display.c_str(), view.c_str());
-    return encoding_of_space(config, space == "<USE_DISPLAY_NAME>" ? display : space);
+    std::string space = config.config->getDisplayViewColorSpaceName(display.c_str(), view.c_str());
+    if (space == "<USE_DISPLAY_NAME>") space = display;
+    if (auto encoding = encoding_of_space(config, space)) return encoding;
+    return encoding_of_display(config, display, space);
 }
 
 }  // namespace aftershade

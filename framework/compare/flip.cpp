@@ -11,6 +11,7 @@
 #include "framework/base/parallel.h"
 #include "framework/compare/flip_band.h"
 #include "framework/compare/row_filter.h"
+#include "framework/image/luminance.h"
 
 namespace aftershade {
 
@@ -47,7 +48,8 @@ Luminances luminances_of(const Image& image) {
     values.reserve(image.floats().size() / 3);
     for (std::size_t i = 0; i + 2 < image.floats().size(); i += 3) {
         const std::span<const float> pixel = image.floats().subspan(i, 3);
-        const float y = 0.2126f * pixel[0] + 0.7152f * pixel[1] + 0.0722f * pixel[2];
+        const float y = float(kRec709Luminance[0]) * pixel[0] + float(kRec709Luminance[1]) * pixel[1] +
+                        float(kRec709Luminance[2]) * pixel[2];
         // As black, which is what FLIP takes such a pixel for.
         values.push_back(std::isfinite(y) ? y : 0);
     }

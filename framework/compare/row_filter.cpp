@@ -1,5 +1,7 @@
 #include "framework/compare/row_filter.h"
 
+#include "framework/image/luminance.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -143,10 +145,14 @@ AFTERSHADE_INLINE void map_body(const float* __restrict in, float scale, const f
     }
 }
 
+constexpr float kShareOfRed = float(kRec709Luminance[0]), kShareOfGreen = float(kRec709Luminance[1]),
+                kShareOfBlue = float(kRec709Luminance[2]);
+
 AFTERSHADE_INLINE void divide_body(const ConstPlanes& in, float scale, const Planes& out, int width) {
     for (int i = 0; i < width; ++i) {
         const float r = in.a[i] * scale, g = in.b[i] * scale, b = in.c[i] * scale;
-        const float factor = 1.0f / (1.0f + (0.2126f * r + 0.7152f * g + 0.0722f * b));
+        const float luminance = kShareOfRed * r + kShareOfGreen * g + kShareOfBlue * b;
+        const float factor = 1.0f / (1.0f + luminance);
         out.a[i] = clamp01(r * factor);
         out.b[i] = clamp01(g * factor);
         out.c[i] = clamp01(b * factor);

@@ -22,8 +22,10 @@ ParamTexture image_texture(const Image& image) {
 }
 
 ParamTexture table_texture(const ColorTransform& transform) {
-    const int rows = int(transform.texels.size() / (std::size_t(kLutRow) * 4));
-    return {kLutRow, rows, 1, gpu::TextureFormat::rgba32f, transform.texels};
+    const int rows = int(transform.texels.size() / (std::size_t(kLutRow) * std::size_t(transform.channels)));
+    const bool is_pairs = transform.channels == 2;
+    return {kLutRow, rows, 1, is_pairs ? gpu::TextureFormat::rg32f : gpu::TextureFormat::rgba32f,
+            transform.texels};
 }
 
 ParamTexture lut_texture(const Lut& lut) {

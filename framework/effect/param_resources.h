@@ -64,8 +64,8 @@ std::string param_table_glsl(const ParamSpec& spec, int binding, bool has_rows =
 gpu::TextureFormat param_texture_format(int channels);
 /// The texels that its type makes of a value. There must be a texture of that type: is_param_texture().
 ParamTexture param_texture(const ParamSpec& spec, const ParamValue& value);
-/// rgba32f. There must be a file. OpenColorIO's has rows of kLutRow. A 3-D LUT has blue for its layer, green
-/// its row; a 1-D one is laid out in rows of kLutRow.
+/// rgba32f, or rg32f for OpenColorIO's curves. There must be a file. OpenColorIO's has rows of kLutRow. A 3-D
+/// LUT has blue for its layer, green its row; a 1-D one is laid out in rows of kLutRow.
 ParamTexture file_texture(const ParamFile& file);
 
 /// The id of an object by its name; nullopt for a name that does not exist.

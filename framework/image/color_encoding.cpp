@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "framework/image/luminance.h"
 #include "framework/image/srgb.h"
 
 namespace aftershade {
@@ -212,7 +213,7 @@ double hlg_scene(double value) {
     return value <= 0.5 ? value * value / 3 : (std::exp((value - kC) / kA) + kB) / 12;
 }
 
-constexpr double kHlgGamma = 1.2, kHlgPeak_cd_m2 = 1000;
+constexpr double kHlgPeak_cd_m2 = 1000;
 
 }  // namespace
 

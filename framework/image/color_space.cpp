@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "framework/base/error.h"
+#include "framework/image/luminance.h"
 
 namespace aftershade {
 
@@ -123,12 +124,11 @@ ColorMatrix conversion_matrix(const Chromaticities& from, const Chromaticities& 
 }
 
 std::array<double, 3> luminance_weights(const Chromaticities& primaries) {
-    constexpr std::array kWeights = {0.2126, 0.7152, 0.0722};  // of Rec. 709
     const ColorMatrix to_rec709 = conversion_matrix(primaries, kRec709);
     std::array<double, 3> weights{};
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 3; ++column)
-            weights[column] += kWeights[row] * to_rec709[row * 3 + column];
+            weights[column] += kRec709Luminance[row] * to_rec709[row * 3 + column];
     return weights;
 }
 

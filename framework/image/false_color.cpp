@@ -1,5 +1,6 @@
 #include "framework/image/false_color.h"
 #include "framework/document/units.h"
+#include "framework/image/luminance.h"
 #include "framework/image/srgb.h"
 
 #include <fmt/format.h>
@@ -306,10 +307,9 @@ const float* FalseColor::pixel(int x, int y) const {
 
 float FalseColor::luminance(const float* pixel) const {
     double y = 0;
-    constexpr std::array weights = {0.2126, 0.7152, 0.0722};  // Rec. 709
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 3; ++column)
-            y += weights[row] * to_rec709_[row * 3 + column] * double(pixel[column]);
+            y += kRec709Luminance[row] * to_rec709_[row * 3 + column] * double(pixel[column]);
     return float(y);
 }
 

@@ -26,6 +26,7 @@ needs_of() {
         bench_dof | bench_isf | bench_sss) echo measure aftershade effect_bench ;;
         bench_exr) echo measure exr_bench ;;
         bench_graph) echo python3 graph_bench ;;
+        bench_ocio) echo ocio aftershade effect_bench ;;
         bench_python | bench_render) echo python3 aftershade ;;
         bench_roofline) echo measure effect_bench ;;
         check_compare_8k) echo compare aftershade ;;

@@ -2,19 +2,22 @@
 import argparse
 import pathlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy
 import PyOpenColorIO as ocio
 
 from measure.measures import Array
 
+Function = Callable[[Array], Array]
 POINTS = 65
 LOG_POINTS = 8192
-# What a shaper holds: stops above 1 at its end, and the light that its logarithm adds.
-TOP_STOPS, TOE = 8.0, 2e-3
+# What a shaper holds: stops above 1 at its end, and the light that its logarithm adds, of which the better one is taken.
+TOP_STOPS, TOES = 8.0, (2e-3, 4e-3)
 # Share of the logarithm beside the view's own curve of greys, which alone would leave bright colours too few points.
 LOG_SHARE = 0.45
+# And beside a density of points by how the view bends, along lines of one channel's light through the others'.
+BEND_SHARES, BEND_POINTS, BEND_LINES = (0.3, 0.4), 257, 300
 # Displays as OpenColorIO 2.1 has them, so that the program finds the encoding for PNG.
 DISPLAYS = ["sRGB", "REC.1886-REC.709", "G2.2-REC.709", "G2.6-P3-D65", "DisplayP3", "REC.2100-PQ", "ST2084-P3-D65",
             "REC.2100-HLG-1000nit"]
@@ -31,9 +34,19 @@ def applied(processor: ocio.Processor, colors: Array) -> Array:
     return values
 
 
-def light_from_log(shares: Array) -> Array:
-    low, high = numpy.log2(TOE), numpy.log2(2.0 ** TOP_STOPS + TOE)
-    return 2.0 ** (low + shares * (high - low)) - TOE
+def random_colors() -> Array:
+    """20000 of Rec. 709, most of them saturated, over 13 stops: none that a shaper was chosen by."""
+    random = numpy.random.default_rng(7)
+    return 2.0 ** random.uniform(-8, 5, (20000, 1)) * 3 * random.dirichlet((1, 1, 1), 20000)
+
+
+def ends_of_log(toe: float) -> tuple[float, float]:
+    return float(numpy.log2(toe)), float(numpy.log2(2.0 ** TOP_STOPS + toe))
+
+
+def light_from_log(shares: Array, toe: float) -> Array:
+    low, high = ends_of_log(toe)
+    return 2.0 ** (low + shares * (high - low)) - toe
 
 
 def test_colors() -> Array:
@@ -42,15 +55,59 @@ def test_colors() -> Array:
     return numpy.concatenate([*chart, numpy.repeat(2.0 ** numpy.linspace(-16, 8, 2000)[:, None], 3, 1)])
 
 
-def log_transform() -> ocio.LogAffineTransform:
-    low, high = numpy.log2(TOE), numpy.log2(2.0 ** TOP_STOPS + TOE)
+def log_transform(toe: float) -> ocio.LogAffineTransform:
+    low, high = ends_of_log(toe)
     return ocio.LogAffineTransform(logSideSlope=[1 / (high - low)] * 3, logSideOffset=[-low / (high - low)] * 3,
-                                   linSideSlope=[1.0] * 3, linSideOffset=[TOE] * 3)
+                                   linSideSlope=[1.0] * 3, linSideOffset=[toe] * 3)
 
 
 def floor_transform() -> ocio.RangeTransform:
     """A logarithm has no value for light below 0."""
     return ocio.RangeTransform(minInValue=0.0, minOutValue=0.0)
+
+
+def is_clamp(transform: ocio.Transform) -> bool:
+    return isinstance(transform, ocio.RangeTransform) and transform.hasMaxOutValue() and transform.getMaxOutValue() == 1
+
+
+class Shaper:
+    """A curve of each channel over the shares of a logarithm, and the light at the points of a cube's sides."""
+
+    def __init__(self, curve: Array, toe: float) -> None:
+        self.curve, self.toe = curve, toe
+        shares = numpy.linspace(0, 1, LOG_POINTS)
+        axes = [light_from_log(numpy.interp(numpy.linspace(0, 1, POINTS), curve[:, c], shares), toe) for c in range(3)]
+        self.corners = numpy.stack(numpy.meshgrid(*axes, indexing="ij"), -1)
+
+    def before_cube(self) -> list[ocio.Transform]:
+        lut = ocio.Lut1DTransform(length=LOG_POINTS, inputHalfDomain=False)
+        lut.setData(self.curve.astype(numpy.float32).ravel())
+        return [floor_transform(), log_transform(self.toe), lut]
+
+
+def shaper_of_greys(view: Function, toe: float) -> Shaper:
+    shares = numpy.linspace(0, 1, LOG_POINTS)
+    grey = numpy.maximum.accumulate(view(numpy.repeat(light_from_log(shares, toe)[:, None], 3, 1))[:, 1])
+    curve = (1 - LOG_SHARE) * (grey - grey[0]) / (grey[-1] - grey[0]) + LOG_SHARE * shares
+    return Shaper(numpy.repeat(curve[:, None], 3, 1), toe)
+
+
+def shaper_of_bends(view: Function, toe: float, share: float) -> Shaper:
+    """The error between points goes with the second derivative and the square of their distance."""
+    places = numpy.random.default_rng(1).random((BEND_LINES, 3))
+    places[:BEND_LINES // 4] = places[:BEND_LINES // 4, :1]
+    shares, curves = numpy.linspace(0, 1, BEND_POINTS), []
+    for channel in range(3):
+        lines = numpy.repeat(places[:, None, :], BEND_POINTS, 1)
+        lines[:, :, channel] = shares
+        values = numpy.clip(view(light_from_log(lines, toe)).reshape(BEND_LINES, BEND_POINTS, 3), -0.05, 1.05)
+        bends = numpy.nan_to_num(numpy.abs(numpy.diff(values, 2, axis=1)).max(axis=2))
+        bend = numpy.pad(numpy.sqrt((bends ** 2).mean(axis=0)), 5, "edge")
+        density = numpy.sqrt(numpy.convolve(bend, numpy.ones(9) / 9, "valid"))
+        density = (1 - share) * density / density.mean() + share
+        curve = numpy.concatenate([[0], numpy.cumsum((density[1:] + density[:-1]) / 2)])
+        curves.append(numpy.interp(numpy.linspace(0, 1, LOG_POINTS), shares, curve / curve[-1]))
+    return Shaper(numpy.stack(curves, -1), toe)
 
 
 class Baker:
@@ -84,27 +141,45 @@ class Baker:
         return ""
 
     def shaped_view(self, view: ocio.Processor, to_p3: ocio.MatrixTransform) -> ocio.GroupTransform:
-        """From ACES2065-1 to the display's numbers, by a shaper and a cube, whose files it writes."""
-        shares = numpy.linspace(0, 1, LOG_POINTS)
+        """From ACES2065-1 to the display's numbers, by a shaper and a cube, whose files it writes: of several shapers the one with
+        the least error."""
+        # A cube is better for what the view makes before it clamps: a clamp is a bend of its own, and exact behind the cube.
+        steps = list(view.createGroupTransform())
+        clamp = [step for step in steps if is_clamp(step)]
+        smooth = self.source.getProcessor(ocio.GroupTransform([step for step in steps if not is_clamp(step)]))
         from_p3 = self.source.getProcessor(to_p3, ocio.TRANSFORM_DIR_INVERSE)
-        light = light_from_log(shares)
-        grey = numpy.maximum.accumulate(applied(view, applied(from_p3, numpy.repeat(light[:, None], 3, 1)))[:, 1])
-        curve = (1 - LOG_SHARE) * (grey - grey[0]) / (grey[-1] - grey[0]) + LOG_SHARE * shares
-        axis = light_from_log(numpy.interp(numpy.linspace(0, 1, POINTS), curve, shares))
-        # OpenColorIO's cubes run through blue first.
-        corners = numpy.stack(numpy.meshgrid(axis, axis, axis, indexing="ij"), -1)
-        cube = applied(view, applied(from_p3, corners))
+
+        def of_p3(light: Array) -> Array:
+            return applied(smooth, applied(from_p3, light))
+
+        colors = applied(self.ap0_from_709, test_colors())
+        exact = numpy.clip(applied(view, colors), 0, 1)
+        best: tuple[float, Shaper, Array] | None = None
+        for shaper in [*(shaper_of_greys(of_p3, toe) for toe in TOES),
+                       *(shaper_of_bends(of_p3, toe, share) for toe in TOES for share in BEND_SHARES)]:
+            cube = of_p3(shaper.corners)
+            cube[numpy.abs(cube) < 1e-30] = 0  # the reader of .spi3d takes no denormal number
+            lut = ocio.Lut3DTransform(gridSize=POINTS)
+            lut.setData(cube.astype(numpy.float32).ravel())
+            lut.setInterpolation(ocio.INTERP_TETRAHEDRAL)
+            whole = self.source.getProcessor(ocio.GroupTransform([to_p3, *shaper.before_cube(), lut]))
+            error = float(numpy.abs(numpy.clip(applied(whole, colors), 0, 1) - exact).max())
+            if best is None or error < best[0]:
+                best = error, shaper, cube
+        assert best is not None
+        _, shaper, cube = best
         self.views += 1
         shaper_name, cube_name = f"shaper_{self.views}.spi1d", f"view_{self.views}.spi3d"
-        lines = "\n".join(f"{value:.8g}" for value in curve)
+        lines = "\n".join(" ".join(f"{value:.8g}" for value in row) for row in shaper.curve)
         (self.folder / "luts" / shaper_name).write_text(
-            f"Version 1\nFrom 0 1\nLength {LOG_POINTS}\nComponents 1\n{{\n{lines}\n}}\n")
+            f"Version 1\nFrom 0 1\nLength {LOG_POINTS}\nComponents 3\n{{\n{lines}\n}}\n")
+        # OpenColorIO's cubes run through blue first.
         index = numpy.stack(numpy.meshgrid(*[numpy.arange(POINTS)] * 3, indexing="ij"), -1).reshape(-1, 3)
         rows = "\n".join(f"{r} {g} {b} {x:.7g} {y:.7g} {z:.7g}" for (r, g, b), (x, y, z) in zip(index, cube, strict=True))
         (self.folder / "luts" / cube_name).write_text(f"SPILUT 1.0\n3 3\n{POINTS} {POINTS} {POINTS}\n{rows}\n")
-        return ocio.GroupTransform([to_p3, floor_transform(), log_transform(),
+        return ocio.GroupTransform([to_p3, floor_transform(), log_transform(shaper.toe),
                                     ocio.FileTransform(src=shaper_name, interpolation=ocio.INTERP_LINEAR),
-                                    ocio.FileTransform(src=cube_name, interpolation=ocio.INTERP_TETRAHEDRAL)])
+                                    ocio.FileTransform(src=cube_name, interpolation=ocio.INTERP_TETRAHEDRAL), *clamp[-1:]])
 
     def add(self, display: str, view: str) -> None:
         processor = self.view(display, view)
@@ -130,9 +205,9 @@ class Baker:
         path.write_text(self.baked.serialize())
         return path
 
-    def errors(self, path: pathlib.Path, display: str, view: str) -> Array:
-        """Of each colour of the chart and the ramp, in 1/1023."""
-        colors = applied(self.ap0_from_709, test_colors())
+    def errors(self, path: pathlib.Path, display: str, view: str, light: Array) -> Array:
+        """Of each colour, in 1/1023."""
+        colors = applied(self.ap0_from_709, light)
         baked = ocio.Config.CreateFromFile(str(path)).getProcessor(
             ocio.DisplayViewTransform(src="ACES2065-1", display=display, view=view))
         apart = numpy.clip(applied(baked, colors), 0, 1) - numpy.clip(applied(self.view(display, view), colors), 0, 1)
@@ -158,8 +233,9 @@ def main(words: Sequence[str]) -> None:
         baker.add(display, view)
     path = baker.write()
     for display, view in chosen:
-        errors = baker.errors(path, display, view)
-        print(f"{display}, {view}: at most {errors.max():.2f}/1023, 99 % within {numpy.percentile(errors, 99):.2f}/1023")
+        chart, others = (baker.errors(path, display, view, light) for light in (test_colors(), random_colors()))
+        print(f"{display}, {view}: at most {chart.max():.2f}/1023, 99 % within {numpy.percentile(chart, 99):.2f}/1023; random colours: "
+              f"at most {others.max():.2f}/1023, 99 % within {numpy.percentile(others, 99):.2f}/1023")
     print(path)
 
 

@@ -59,6 +59,8 @@ TEST_F(OcioCommand, RefusesAViewThatTheConfigLacksAtItsPlace) {
               std::string::npos)
         << result.err;
     EXPECT_NE(result.err.find("did you mean 'Film'?"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("$OCIO"), std::string::npos)
+        << "the variable is not the user's: " << result.err;
 }
 
 TEST_F(OcioCommand, DrawsFramesAgainAfterAChangeOfALut) {
