@@ -17,6 +17,7 @@
 #include "framework/base/path_bounds.h"
 #include "framework/base/text.h"
 #include "framework/batch/worker.h"
+#include "framework/capture/frame_range.h"
 
 namespace aftershade::cli {
 
@@ -29,8 +30,8 @@ constexpr char kBetween = '\0';
 
 std::string text_of(const serve::ExportJob& job) {
     std::string text;
-    for (const std::string& one :
-         {job.look.string(), job.look_folder.string(), job.capture, job.output.string()})
+    for (const std::string& one : {job.look.string(), job.look_folder.string(), job.capture,
+                                   job.output.string(), format_frame_range(job.frames)})
         text += one + kBetween;
     for (const std::string& file : job.files) text += file + kBetween;
     return text;
@@ -90,9 +91,10 @@ serve::RunExport export_runner(PassLimit limit) {
 serve::ExportJob read_export_job() {
     const std::string text = read_text_file(job_file(std::getenv(kExportVariable)), ErrorKind::usage);
     auto words = split(text, kBetween);
-    if (words.size() < 5) throw Error(ErrorKind::usage, std::string(kExportVariable) + " names no export");
-    serve::ExportJob job{words[0], words[1], std::string(words[2]), words[3], {}};
-    job.files.assign(words.begin() + 4, words.end() - 1);  // the last one stands behind the last NUL
+    if (words.size() < 6) throw Error(ErrorKind::usage, std::string(kExportVariable) + " names no export");
+    serve::ExportJob job{words[0], words[1], std::string(words[2]), words[3], {}, {}};
+    job.frames = parse_frame_range(words[4]).value_or(std::vector<int>());
+    job.files.assign(words.begin() + 5, words.end() - 1);  // the last one stands behind the last NUL
     return job;
 }
 
@@ -100,6 +102,8 @@ ExitCode run_export(const serve::ExportJob& job, RunArguments arguments) {
     constexpr int kLessUrgent = 10;  // than the pictures of the page
     setpriority(PRIO_PROCESS, 0, kLessUrgent);
     arguments.look = job.look.string();
+    // Those of the page, which leaves out what is missing.
+    arguments.capture.frames = format_frame_range(job.frames);
     arguments.look_folder = job.look_folder.string();
     arguments.outputs = {job.output.string()};
     arguments.progress = "none";

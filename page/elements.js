@@ -85,7 +85,7 @@ let quiet;
 /** Shows a sentence for a while, and has screen readers say it. */
 export function notify(words, isError = false) {
   const place = document.getElementById("notice");
-  place.textContent = words;
+  if (place.textContent !== words) place.textContent = words; // the same words are not read out again
   place.classList.toggle("error", isError);
   clearTimeout(quiet);
   quiet = setTimeout(() => (place.textContent = ""), isError ? 9000 : 2500);

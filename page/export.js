@@ -79,7 +79,8 @@ class FramesForm {
     if (!this.#watching) this.name.value = name;
     this.where.textContent = read_only
       ? "The program was started with --read-only: it writes no frames."
-      : `${count} ${count === 1 ? "frame" : "frames"} at full size, into ${look.folder}. Images get a folder of this name.`;
+      : `${count} ${count === 1 ? "frame" : "frames"} at full size, into ${look.folder}. Images get a folder of this name.` +
+        (count && capture.frames.at(-1) - capture.frames[0] >= count ? " Numbers without a frame are left out." : "");
     this.start.disabled = read_only;
     this.#watch();
   }
@@ -95,14 +96,17 @@ class FramesForm {
     if (!name) return this.#fail("Type a name");
     try {
       await post("/api/export/start", { name, format: this.format.value });
-      await this.#watch();
+      await this.#watch(true);
     } catch (error) {
       this.#fail(error.message);
     }
   }
 
-  /** Shows how far the export is until it ends, also one that was started before the page was loaded. */
-  async #watch() {
+  /**
+   * Shows how far the export is until it ends, also one that was started before the page was loaded. `isOwn`: this page
+   * started it, and it may have ended already.
+   */
+  async #watch(isOwn = false) {
     if (this.#watching) return;
     this.#watching = true;
     try {
@@ -111,8 +115,9 @@ class FramesForm {
         this.start.hidden = runs;
         this.cancel.hidden = this.bar.hidden = !runs;
         if (!runs) {
-          if (wasRunning && fault) this.#fail(`${name}: ${fault}`);
-          else if (wasRunning) this.words.textContent = `Wrote ${written}`;
+          const isNews = isOwn || wasRunning;
+          if (isNews && fault) this.#fail(`${name}: ${fault}`);
+          else if (isNews) this.words.textContent = `Wrote ${written}`;
           break;
         }
         if (!wasRunning) this.cancel.focus();
@@ -168,6 +173,9 @@ export class ExportDialog {
     this.all.open(this.name);
     this.node.showModal();
   }
+
+  /** The page gives one with what is typed and not yet applied. */
+  textOfLook = () => this.store.state.text;
 
   get frames() {
     return spread(this.store.state.capture.frames, MOST_FRAMES);
@@ -233,7 +241,7 @@ export class ExportDialog {
 
   async look() {
     const name = `${this.name}.json`;
-    download(new Blob([this.store.state.text], { type: "application/json" }), name);
+    download(new Blob([this.textOfLook()], { type: "application/json" }), name);
     return name;
   }
 }

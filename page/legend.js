@@ -39,8 +39,8 @@ export class Legend {
   }
 
   /** `times`: of the picture of that view. */
-  show(view, { legend, sharp_m } = {}) {
-    const isSharp = view.startsWith("sharp:");
+  show(view, { legend, sharp_m, fault } = {}) {
+    const isSharp = view.startsWith("sharp:") && !fault;
     this.node.hidden = !isSharp && !legend;
     if (isSharp) return this.node.replaceChildren(...sharpParts(sharp_m));
     if (!legend) return this.node.replaceChildren();

@@ -86,6 +86,7 @@ dialog.node.addEventListener("added", async ({ detail }) => {
   notify(`${list.cards[detail.at]?.title.textContent} added as step ${detail.at + 1}`);
 });
 const text = new TextView(store, names);
+exporting.textOfLook = () => (text.isTyped ? text.area.value : store.state.text);
 const faults = new Faults(store, (line, column) => {
   showPanel("text");
   text.goTo(line, column);
@@ -263,7 +264,9 @@ const shortcuts = new Shortcuts([
   { group: "Page", keys: ["Shift+D"], words: "Choose the colours: system, dark, light", run: nextTheme },
 ]);
 shortcuts.onKeyUp("b", () => viewer.swap(false));
-addEventListener("beforeunload", (event) => store.state && (!store.isSaved || shaders.isEdited) && event.preventDefault());
+addEventListener("beforeunload", (event) => {
+  if (store.state && (!store.isSaved || shaders.isEdited || text.isTyped)) event.preventDefault();
+});
 
 // ---- what changes ----
 
@@ -274,7 +277,7 @@ store.addEventListener("change", () => {
   lookName.title = look.path;
   captureName.textContent = `${capture.width} × ${capture.height}`;
   captureName.title = capture.path;
-  mark.textContent = read_only ? "read-only" : isChanged ? "unsaved" : look.has_file ? "" : "new";
+  mark.textContent = read_only ? "read-only" : look.is_gone ? "file is gone" : isChanged ? "unsaved" : look.has_file ? "" : "new";
   mark.classList.toggle("changed", isChanged);
   document.title = `${isChanged ? "• " : ""}${lookName.textContent} – Aftershade`;
   undoButton.disabled = !can_undo;
@@ -296,10 +299,9 @@ viewer.addEventListener("picture", ({ detail }) => {
   shaders.setFault("");
   viewer.setMeasured(detail.times);
   list.showFrame();
-  if (fault) return;
-  costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
+  if (!fault) costs.show(detail.times, detail.isCoarse, new Set(list.cards.map(({ step }) => nameOf(step))));
   if (detail.isCoarse) return;
-  list.showCosts([...costs.known.values()]);
+  if (!fault) list.showCosts([...costs.known.values()]);
   if (viewer.isPlaying) return;
   // After a pause: the next picture of a drag does not wait for them.
   measuring = setTimeout(() => {
@@ -311,7 +313,7 @@ viewer.addEventListener("picture", ({ detail }) => {
       shown: isFinal ? detail.bitmap : null,
     });
     probe.again(viewer.frame);
-    costs.truths.load(viewer.frame, store.state.capture.truths[viewer.frame] ?? []);
+    if (!fault) costs.truths.load(viewer.frame, store.state.capture.truths[viewer.frame] ?? []);
   }, 150);
 });
 viewer.addEventListener("probe", ({ detail }) => probe.show(detail, viewer.frame));

@@ -55,7 +55,6 @@ export class Pictures extends EventTarget {
       scale,
       view,
       exposure: wish.exposure,
-      format: "png",
       ...(wish.continues && { continues: 1 }),
     });
     const show = (name, { bitmap, times }, isCoarse, ms) =>

@@ -159,9 +159,9 @@ export class Store extends EventTarget {
     if (this.#running) return this.#running; // the next call follows
     return this.#inTurn(async () => {
       try {
-        const { revision, effects_revision } = await get("/api/changes");
-        if (effects_revision !== this.state.effects_revision) await this.#takeWithEffects(await get("/api/state"));
-        else if (revision !== this.state.revision) await this.refresh();
+        const { path, ...found } = await get("/api/changes"),
+          isNew = Object.keys(found).some((key) => found[key] !== this.state[key]);
+        if (isNew || path !== this.state.look.path) await this.refresh();
         return true;
       } catch (error) {
         this.#fail(error);

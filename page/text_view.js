@@ -70,6 +70,11 @@ export class TextView {
     return document.activeElement === this.area && this.area.value !== this.shown;
   }
 
+  /** Whether it holds what the program has not taken. */
+  get isTyped() {
+    return this.shown !== undefined && this.area.value !== this.shown && this.area.value !== this.store.state.text;
+  }
+
   update() {
     const { text, read_only } = this.store.state;
     this.area.readOnly = read_only;

@@ -348,6 +348,7 @@ export class Viewer extends EventTarget {
     pictures.addEventListener("idle", () => (this.busy.hidden = true));
     pictures.addEventListener("fail", ({ detail }) => {
       this.setBadge(detail.message);
+      if (detail.status === 0 && this.isPlaying) this.play(); // the program is gone: it pauses
       this.dispatchEvent(new CustomEvent("fail", { detail }));
     });
     pictures.addEventListener("picture", ({ detail }) => {
@@ -356,7 +357,11 @@ export class Viewer extends EventTarget {
       this.picture.draw();
       if (detail.name === "first") {
         const fault = detail.times?.fault;
-        if (fault) this.setBadge(`capture without steps: ${fault.message}`);
+        // The step has the message.
+        if (fault)
+          this.setBadge(
+            `capture without steps: ${fault.step ? `this frame lacks what ${fault.step} needs` : fault.message}`,
+          );
         else if (!this.store.hasFaults) this.setBadge(detail.isCoarse ? "1/4" : "", false);
         this.canvas.dataset.revision = detail.wish.revision;
         this.canvas.dataset.scale = detail.isCoarse ? 4 : 1;

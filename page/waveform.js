@@ -57,7 +57,7 @@ export class Waveform {
     const wanted = (this.wanted = { revision, frame });
     let bitmap = shown;
     try {
-      bitmap ??= (await picture({ revision, frame, scale: 1, view: "final", exposure: 0, format: "png" })).bitmap;
+      bitmap ??= (await picture({ revision, frame, scale: 1, view: "final", exposure: 0 })).bitmap;
     } catch {
       return; // the viewer says why; a newer picture follows
     }

@@ -6,12 +6,12 @@
 
 namespace aftershade {
 
-#define AFTERSHADE_OPTIONS                                                                                  \
-    allow_path, alpha, audit, checkpoint, color_space, compression, cryptomatte, deep, effect_path,         \
-        history_out, jitter, keep_channels, layer, layers, list_nodes, max_image_bytes, no_journal, object, \
-        on_nan, output, output_roles, pass_timeout, pixel, pixel_type, plugin_memory, plugin_path,          \
-        plugin_timeout, port, print_ffmpeg, profile, read_ahead, read_only, region, role, samples, scale, set,          \
-        shading_rate, size, subframes, tap, telemetry, texture_size, truth, truth_only, verbose, view,      \
+#define AFTERSHADE_OPTIONS                                                                                   \
+    allow_path, alpha, audit, checkpoint, color_space, compression, cryptomatte, deep, effect_path,          \
+        history_out, jitter, keep_channels, layer, layers, list_nodes, max_image_bytes, missing, no_journal, \
+        object, on_nan, output, output_roles, pass_timeout, pixel, pixel_type, plugin_memory, plugin_path,   \
+        plugin_timeout, port, print_ffmpeg, profile, read_ahead, read_only, region, role, samples, scale,    \
+        set, shading_rate, size, subframes, tap, telemetry, texture_size, truth, truth_only, verbose, view,  \
         visibility, visibility_on, warmup
 
 enum class Option { AFTERSHADE_OPTIONS };

@@ -57,6 +57,11 @@ int png_bits(const OutputOptions& options, const ColorEncoding& encoding) {
     return options.png_bits != 0 ? options.png_bits : encoding.is_hdr() ? 16 : 8;
 }
 
+PngMeaning png_meaning(const OutputOptions& options, const FrameResult& result, const Capture& capture) {
+    const ColorEncoding encoding = display_encoding(result);
+    return {encoding, capture.header.pixel_aspect, png_bits(options, encoding)};
+}
+
 PngText png_text(const OutputOptions& options) {
     if (options.fingerprint.empty()) return {};
     return {{kFingerprintName, options.fingerprint}};
@@ -232,6 +237,12 @@ std::vector<fs::path> output_files(const OutputOptions& options, const std::vect
     return files;
 }
 
+std::string encode_display(const std::string& name, const OutputOptions& options, const FrameResult& result,
+                           const Capture& capture) {
+    return encode_png(name, display_picture(result, capture), png_text(options),
+                      png_meaning(options, result, capture));
+}
+
 WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& result, const Capture& capture,
                            const CaptureReader& reader) {
     WrittenFiles written;
@@ -241,9 +252,7 @@ WrittenFiles write_outputs(const OutputOptions& options, const FrameResult& resu
         if (extension(path) != ".exr") {
             const Image picture = display_picture(result, capture);
             if (!result.images.contains(kDisplayRole)) written.share_cut = share_above_1(picture);
-            write_png(path, picture, png_text(options),
-                      {display_encoding(result), capture.header.pixel_aspect,
-                       png_bits(options, display_encoding(result))});
+            write_png(path, picture, png_text(options), png_meaning(options, result, capture));
         } else if (auto lost = write_exr_output(path, options, result, capture, reader); !lost.empty())
             written.warnings.push_back(std::move(lost));
         written.paths.push_back(path);

@@ -33,6 +33,10 @@ std::vector<std::string> roles_written_as_halfs(const OutputOptions& options);
 std::vector<std::filesystem::path> output_files(const OutputOptions& options, const std::vector<Tap>& taps,
                                                 int frame);
 
+/// The bytes of the PNG that write_outputs writes of the frame.
+std::string encode_display(const std::string& name, const OutputOptions& options, const FrameResult& result,
+                           const Capture& capture);
+
 struct WrittenFiles {
     std::vector<std::filesystem::path> paths;
     std::vector<std::string> warnings;  ///< values that a format could not hold, with the remedy

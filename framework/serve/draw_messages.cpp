@@ -76,6 +76,7 @@ bool send_request(int socket, const DrawRequest& request) {
                          {"scale", request.scale},
                          {"view", request.view},
                          {"exposure_ev", request.exposure_ev},
+                         {"is_file", request.is_file},
                          {"continues", request.continues},
                          {"x", request.x},
                          {"y", request.y},
@@ -96,6 +97,7 @@ std::optional<DrawRequest> receive_request(int socket) {
     json->at("scale").get_to(request.scale);
     json->at("view").get_to(request.view);
     json->at("exposure_ev").get_to(request.exposure_ev);
+    json->at("is_file").get_to(request.is_file);
     json->at("continues").get_to(request.continues);
     json->at("x").get_to(request.x);
     json->at("y").get_to(request.y);

@@ -34,6 +34,7 @@ struct DrawRequest {
     int scale = 1;               ///< the picture has 1/scale of the pixels of each side
     std::string view = "final";  ///< as that of a PictureRequest
     double exposure_ev = 0;
+    bool is_file = false;    ///< the picture is the PNG that `run` writes, and not one that is packed quickly
     bool continues = false;  ///< effects with history see the frame before it, where that was drawn last
     int x = 0, y = 0;        ///< of a probe
     std::string truth;       ///< of metrics

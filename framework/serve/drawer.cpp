@@ -99,8 +99,8 @@ Response answer(const DrawRequest& request, const ServeOptions& options, Looks& 
     if (request.kind == DrawRequest::Kind::starts)
         return starts(request, options.data_folder, *looks.effects_of(request.effects_revision), maker);
     if (request.kind == DrawRequest::Kind::objects) return json_response(maker.objects(request.frame));
-    const PictureRequest wanted{looks.of(request), request.frame,       request.scale,
-                                request.view,      request.exposure_ev, request.continues};
+    const PictureRequest wanted{looks.of(request),   request.frame,     request.scale,  request.view,
+                                request.exposure_ev, request.continues, request.is_file};
     switch (request.kind) {
         case DrawRequest::Kind::probe: return json_response(maker.probe(wanted, request.x, request.y));
         case DrawRequest::Kind::histogram: return json_response(maker.histogram(wanted));
@@ -110,9 +110,9 @@ Response answer(const DrawRequest& request, const ServeOptions& options, Looks& 
         case DrawRequest::Kind::thumbnail:
         case DrawRequest::Kind::picture: break;
     }
-    // A thumbnail shows what its step does: the capture alone would say that it does nothing.
-    MadePicture made =
-        request.kind == DrawRequest::Kind::picture ? maker.make_or_show_capture(wanted) : maker.make(wanted);
+    // A thumbnail shows what its step does, and a file is the look's: neither is the capture alone.
+    const bool may_be_capture = request.kind == DrawRequest::Kind::picture && !request.is_file;
+    MadePicture made = may_be_capture ? maker.make_or_show_capture(wanted) : maker.make(wanted);
     Response response{
         200,
         "image/png",

@@ -58,15 +58,16 @@ void Exporter::start(const ExportRequest& request) {
     if (thread_.joinable()) thread_.join();  // it has ended, since none runs
     const fs::path folder = hidden_folder(request.look_folder);
     const fs::path result = folder / kResults / target.filename();
-    ExportJob job{folder / "look.json", request.look_folder, request.capture,
-                  ending.empty() ? result / (request.name + "_####." + request.format) : result,
-                  request.files};
+    ExportJob job{
+        folder / "look.json", request.look_folder,
+        request.capture,      ending.empty() ? result / (request.name + "_####." + request.format) : result,
+        request.files,        request.frames};
     runs_ = true;
     cancel_ = false;
     name_ = target.filename().string();
     written_ = fault_ = "";
     done_ = 0;
-    frames_ = request.frames;
+    frames_ = request.frames.size();
     thread_ = std::thread([this, job = std::move(job), text = request.text, folder, target] {
         work(job, text, folder, target);
     });
@@ -96,6 +97,10 @@ void Exporter::work(const ExportJob& job, const std::string& text, const fs::pat
     }
     std::error_code ignored;  // what stays is hidden, and no file of the user's
     fs::remove_all(folder, ignored);
+    // Messages name files as they would have been called.
+    const std::string hidden = (folder / kResults).string(), shown = target.parent_path().string();
+    for (std::size_t at = 0; (at = fault.find(hidden, at)) != std::string::npos; at += shown.size())
+        fault.replace(at, hidden.size(), shown);
     const std::lock_guard lock(mutex_);
     runs_ = false;
     fault_ = fault;

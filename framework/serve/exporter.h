@@ -23,6 +23,7 @@ struct ExportJob {
     std::string capture;
     std::filesystem::path output;    ///< pattern or video
     std::vector<std::string> files;  ///< that the look may name, with links followed
+    std::vector<int> frames;
 };
 
 /// Runs the job in a process of its own until `cancel`, and calls `frame_done` after each frame. Returns why
@@ -38,7 +39,7 @@ struct ExportRequest {
     std::vector<std::string> files;
     std::filesystem::path look_folder;
     std::string capture;
-    std::size_t frames = 0;
+    std::vector<int> frames;
 };
 
 /// One export at a time. What it writes appears whole, under its name, or not at all: until then it lies in a

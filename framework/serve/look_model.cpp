@@ -169,8 +169,9 @@ std::string LookModel::with_edits(const nlohmann::ordered_json& edits) const {
 void LookModel::edit(std::uint64_t revision, const nlohmann::ordered_json& edits) {
     const std::lock_guard lock(mutex_);
     if (revision != revision_)
-        throw Refusal{409, "the edit is for revision " + std::to_string(revision) + ", the look is at " +
-                               std::to_string(revision_)};
+        throw Refusal{409,
+                      "the look was changed elsewhere meanwhile; make the change again (it is for revision " +
+                          std::to_string(revision) + ", the look is at " + std::to_string(revision_) + ")"};
     std::string text = with_edits(edits);
     if (text == texts_[at_]) return;
     Binding binding = binding_of(text, Origin::page);
@@ -226,11 +227,14 @@ void LookModel::save(const std::string& name) {
     const std::filesystem::path path =
         file_ == File::unnamed ? new_path(path_.parent_path(), name, ".json", "the look") : path_;
     if (!replace_text_file(path, file_ == File::there ? saved_text_ : "", texts_[at_]))
-        throw Refusal{409, path.string() + " was changed by another program; nothing was written"};
+        throw Refusal{409, path.string() +
+                               " was changed by another program; nothing was written (export the look, or "
+                               "undo to the saved one, and the page reads the file)"};
     path_ = path;
     file_ = File::there;
     saved_text_ = texts_[at_];
     saved_revision_ = revision_;
+    is_gone_ = false;
 }
 
 void LookModel::follow_file() {
@@ -238,10 +242,27 @@ void LookModel::follow_file() {
     if (file_ != File::there || texts_[at_] != saved_text_) return;
     std::string fault;
     std::string on_disk = read_regular_file(path_, kMaxDocumentBytes, fault);
+    std::error_code failure;
+    is_gone_ =
+        std::filesystem::symlink_status(path_, failure).type() == std::filesystem::file_type::not_found;
     if (!fault.empty() || on_disk == saved_text_) return;
     saved_text_ = on_disk;
     Binding binding = binding_of(on_disk, Origin::disk);
     change(std::move(on_disk), std::move(binding));
+}
+
+nlohmann::ordered_json LookModel::revisions() const {
+    const std::lock_guard lock(mutex_);
+    return {{"revision", revision_},
+            {"effects_revision", effects_revision_},
+            {"saved_revision", saved_revision()},
+            {"path", path_.string()}};
+}
+
+/// That of the text on disk; null where no text is.
+nlohmann::ordered_json LookModel::saved_revision() const {
+    if (is_gone_) return nullptr;
+    return texts_[at_] == saved_text_ ? revision_ : saved_revision_;
 }
 
 std::uint64_t LookModel::revision() const {
@@ -310,12 +331,13 @@ nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
                      {"name", path_.filename().string()},
                      {"folder", path_.parent_path().string()},
                      {"has_file", file_ == File::there},
+                     {"is_gone", is_gone_},
                      {"has_name", file_ != File::unnamed}};
     state["capture"] = nullptr;
     state["read_only"] = read_only_;
     state["revision"] = revision_;
     state["effects_revision"] = effects_revision_;
-    state["saved_revision"] = texts_[at_] == saved_text_ ? revision_ : saved_revision_;
+    state["saved_revision"] = saved_revision();
     state["can_undo"] = at_ > 0;
     state["can_redo"] = at_ + 1 < texts_.size();
     state["text"] = texts_[at_];

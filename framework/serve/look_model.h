@@ -64,7 +64,11 @@ public:
 
     /// Takes over what another program wrote to the file, as one step of undo, faults and all. Nothing
     /// happens where the text here is not saved, or the file cannot be read or is longer than a look may be.
+    /// Where the file is gone, the text counts as not saved.
     void follow_file();
+    /// {"revision", "effects_revision", "saved_revision", "path"}: whether a page has to read the state
+    /// again.
+    nlohmann::ordered_json revisions() const;
     /// Counts the changes of the text and of the effects.
     std::uint64_t revision() const;
 
@@ -106,6 +110,7 @@ private:
     void adopt(Binding binding);
     void bind();
     void change(std::string text, Binding binding);
+    nlohmann::ordered_json saved_revision() const;
 
     std::string with_edits(const nlohmann::ordered_json& edits) const;
 
@@ -122,6 +127,7 @@ private:
     std::vector<std::string> texts_;
     std::size_t at_ = 0;  // of texts_
     std::string saved_text_;
+    bool is_gone_ = false;  // another program removed the file
     std::uint64_t revision_ = 1;
     std::uint64_t saved_revision_ = 1;
     Diagnostics faults_;

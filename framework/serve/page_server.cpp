@@ -119,13 +119,26 @@ DrawRequest PageServer::request_of(const Request& request, DrawRequest::Kind kin
 
 /// Where nothing can be drawn.
 std::optional<Response> PageServer::last_picture(const Request& request) const {
-    if (setup_.look.bound() || request.parameter("view", "final") != "final") return std::nullopt;
+    if (setup_.look.bound() || request.parameter("view", "final") != "final" ||
+        request.parameter("format") == "png")
+        return std::nullopt;
     return setup_.pictures.last_final();
+}
+
+/// `revision` is that of the last text without faults.
+void PageServer::require_whole_look(std::uint64_t revision) const {
+    if (revision != setup_.look.revision())
+        throw Refusal{409, "the look has faults; correct them before the export"};
 }
 
 DrawRequest PageServer::picture(const Request& request) const {
     DrawRequest wanted = request_of(request, DrawRequest::Kind::picture);
-    if (request.parameter("format", "png") != "png") throw Refusal{400, "'format' is png"};
+    const std::string format = request.parameter("format", "quick");
+    if (format != "quick" && format != "png") throw Refusal{400, "'format' is quick or png"};
+    wanted.is_file = format == "png";
+    if (wanted.is_file && (wanted.view != "final" || wanted.exposure_ev != 0))
+        throw Refusal{400, "a file is of the view final without exposure"};
+    if (wanted.is_file) require_whole_look(wanted.revision);
     return wanted;
 }
 
@@ -183,8 +196,11 @@ Response PageServer::take_capture(const Request& request) {
 Response PageServer::command() const {
     const auto capture = setup_.captures.now();
     const char* output = capture->sequence.frames.size() == 1 ? "out.png" : "out_####.png";
-    return json_response({{"command", printed_command({"aftershade", "run", setup_.look.saved_path().string(),
-                                                       capture->name, "-o", output})}});
+    std::vector<std::string> words = {"aftershade",  "run", setup_.look.saved_path().string(),
+                                      capture->name, "-o",  output};
+    if (!capture->sequence.frames_declared && find_gaps(capture->sequence.frames).count > 0)
+        words.insert(words.end(), {spelled(Option::missing), "skip"});
+    return json_response({{"command", printed_command(words)}});
 }
 
 /// Writes the frames of the look as edited.
@@ -196,12 +212,10 @@ Response PageServer::start_export(const Request& request) {
     if (setup_.look.is_read_only())
         throw Refusal{403, "nothing is exported: the program runs with " + spelled(Option::read_only)};
     const auto look = setup_.look.bound();
-    if (!look || look->revision != setup_.look.revision())
-        throw Refusal{409, "the look has faults; correct them before the export"};
+    require_whole_look(look ? look->revision : 0);
     const auto capture = setup_.captures.now();
     setup_.exporter.start({body["name"].get<std::string>(), body["format"].get<std::string>(), look->text,
-                           look->files, setup_.look.folder(), capture->name,
-                           capture->sequence.frames.size()});
+                           look->files, setup_.look.folder(), capture->name, capture->sequence.frames});
     return json_response(setup_.exporter.state());
 }
 
@@ -217,8 +231,7 @@ void PageServer::follow_effects() {
 Response PageServer::changes() {
     follow_effects();
     setup_.look.follow_file();
-    return json_response(
-        {{"revision", setup_.look.revision()}, {"effects_revision", setup_.look.effects_revision()}});
+    return json_response(setup_.look.revisions());
 }
 
 Response PageServer::shaders(const Request& request) const {

@@ -46,6 +46,7 @@ private:
     Response state() const;
     Response change(const Request& request);
     std::optional<Response> last_picture(const Request& request) const;
+    void require_whole_look(std::uint64_t revision) const;
     DrawRequest picture(const Request& request) const;
     DrawRequest probe(const Request& request) const;
     DrawRequest metrics(const Request& request) const;

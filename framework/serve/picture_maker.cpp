@@ -15,6 +15,7 @@
 #include "framework/effect/program_store.h"
 #include "framework/image/role.h"
 #include "framework/run/nan_policy.h"
+#include "framework/run/output.h"
 #include "framework/serve/quick_png.h"
 #include "framework/serve/truths.h"
 #include "framework/serve/view_picture.h"
@@ -211,12 +212,17 @@ ShownView PictureMaker::shown(const Scaled& scaled, const PictureRequest& reques
     return view_picture({request.view, request.exposure_ev, scaled.result, whole_capture(request.frame)});
 }
 
+std::string PictureMaker::file_of(const Scaled& scaled) const {
+    const Loaded& loaded = *scaled.loaded;
+    return encode_display("the picture", {}, scaled.result, *loaded.captures[loaded.captures.size() / 2]);
+}
+
 MadePicture PictureMaker::make(const PictureRequest& request) {
     const auto start = Clock::now();
     Scaled& scaled = draw(request);
     const ShownView view = shown(scaled, request);
     MadePicture made;
-    made.png = quick_png(view.picture, !is_false_color(request.view));
+    made.png = request.is_file ? file_of(scaled) : quick_png(view.picture, !is_false_color(request.view));
     nlohmann::ordered_json times;
     times["passes"] = nlohmann::ordered_json::array();
     for (const graph::PassTime& time : scaled.result.times) {
@@ -253,13 +259,26 @@ MadePicture PictureMaker::make_or_show_capture(const PictureRequest& request) {
     try {
         return make(request);
     } catch (const Error& error) {
-        if (error.kind() != ErrorKind::capture || request.view != "final") throw;
-        const Capture& whole = whole_capture(request.frame);
-        const ShownView view = view_picture({"before", request.exposure_ev, {}, whole});
-        return {quick_png(view.picture, true),
-                header_text({{"fault", {{"message", error.what()}, {"step", step_at_fault(request)}}}}),
-                true};
+        if (error.kind() != ErrorKind::capture) throw;
+        std::optional<ShownView> view = view_without_steps(request);
+        if (!view) throw;
+        nlohmann::ordered_json times = {
+            {"fault", {{"message", error.what()}, {"step", step_at_fault(request)}}}};
+        if (!view->legend.is_null()) times["legend"] = view->legend;
+        return {quick_png(view->picture, view->legend.is_null()), header_text(times), true};
     }
+}
+
+/// A role or a truth that the request shows, else the picture before all steps; nullopt without a colour.
+std::optional<ShownView> PictureMaker::view_without_steps(const PictureRequest& request) {
+    static const std::string kBefore = "before";
+    const std::string role = request.view.starts_with("role:") ? request.view.substr(5) : "";
+    const bool is_truth = request.view.starts_with(kTruthView);
+    const Capture& capture = is_truth ? truth(request.frame, request.view.substr(kTruthView.size()))
+                                      : whole_capture(request.frame);
+    const bool is_stored_role = capture.images.contains(role);
+    if (!is_stored_role && !capture.images.contains(kColorRole)) return std::nullopt;
+    return view_picture({is_stored_role ? request.view : kBefore, request.exposure_ev, {}, capture});
 }
 
 /// The first step that takes from the frame what the frame has not; "" where no single step is at fault.
@@ -360,15 +379,27 @@ nlohmann::ordered_json PictureMaker::probe(const PictureRequest& request, int x,
     PictureRequest full = request;
     full.scale = 1;
     full.view = "final";
-    Scaled& scaled = draw(full);
-    json["result"] = result_at(scaled.result, scaled.loaded->captures.front()->header, x, y);
+    json["result"] = nullptr;
+    try {
+        Scaled& scaled = draw(full);
+        json["result"] = result_at(scaled.result, scaled.loaded->captures.front()->header, x, y);
+    } catch (const Error& error) {
+        // What the capture has stays there to be picked, which may be what mends the step.
+        if (error.kind() != ErrorKind::capture) throw;
+    }
     return json;
 }
 
 nlohmann::ordered_json PictureMaker::histogram(const PictureRequest& request) {
     PictureRequest full = request;
     full.view = "final";
-    return histogram_json(picture(draw(full), full).picture);
+    try {
+        return histogram_json(picture(draw(full), full).picture);
+    } catch (const Error& error) {
+        const auto view = error.kind() == ErrorKind::capture ? view_without_steps(full) : std::nullopt;
+        if (!view) throw;
+        return histogram_json(view->picture);
+    }
 }
 
 }  // namespace aftershade::serve

@@ -31,6 +31,7 @@ struct PictureRequest {
     std::string view = "final";  ///< a view of view_picture(), or truth:NAME, difference:NAME
     double exposure_ev = 0;
     bool continues = false;  ///< history continues where the frame before this one was drawn last
+    bool is_file = false;    ///< the PNG that `run` writes of the final picture
 };
 
 struct MadePicture {
@@ -51,14 +52,15 @@ public:
     const gpu::ContextInfo& gl() const { return context_.info(); }
     /// Throws Error as `run` does.
     MadePicture make(const PictureRequest& request);
-    /// As make(). Where the capture lacks what a step takes from it, the final picture is that of the
-    /// capture, and its times have "fault": {"message", "step"}.
+    /// As make(). Where the capture lacks what a step takes from it, the view is that of the capture: its
+    /// role, else its picture. The times have "fault": {"message", "step"}.
     MadePicture make_or_show_capture(const PictureRequest& request);
     CaptureHeader header_of(int frame) const;
     /// A look's text with the middle of the picture, where it focuses on that, replaced by the nearest place
     /// that shows a surface: the middle may be sky.
     std::string focused_on_surface(const std::string& text, int frame);
-    /// Every role's value at a pixel of the whole picture, and the result's.
+    /// Every role's value at a pixel of the whole picture, and the result's; null where the capture lacks
+    /// what a step takes from it.
     nlohmann::ordered_json probe(const PictureRequest& request, int x, int y);
     /// The names of what the frame shows, as FrameObjects::list() has them.
     nlohmann::ordered_json objects(int frame);
@@ -93,6 +95,7 @@ private:
 
     Scaled& draw(const PictureRequest& request);
     void adopt(Scaled& scaled, const PictureRequest& request, Pipeline pipeline);
+    std::optional<ShownView> view_without_steps(const PictureRequest& request);
     std::string step_at_fault(const PictureRequest& request);
     bool load(Scaled& scaled, const PictureRequest& request);
     /// What decides which frame's images a step has besides those of the capture.
@@ -103,6 +106,7 @@ private:
     const Image& made_color(const PictureRequest& request);
     ShownView difference(const PictureRequest& request, const std::string& truth);
     ShownView picture(const Scaled& scaled, const PictureRequest& request) const;
+    std::string file_of(const Scaled& scaled) const;
     ShownView shown(const Scaled& scaled, const PictureRequest& request);
     const Capture& whole_capture(int frame);
     const FrameObjects& frame_objects(int frame);

@@ -20,7 +20,7 @@ export async function startServer(words, options, command = ["serve"]) {
   });
   const end = () =>
     new Promise((done) => {
-      if (child.exitCode !== null) return done();
+      if (child.exitCode !== null || child.signalCode !== null) return done();
       child.on("exit", done);
       child.kill("SIGINT");
     });

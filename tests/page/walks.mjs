@@ -31,7 +31,7 @@ export function walk(name, work, { words = [capture], mayFail = false, ...option
       });
       page = await openServed(browser, server.address, options);
       await drawn(page);
-      await work(page, folder);
+      await work(page, folder, server);
       if (!mayFail) assert.deepEqual(page.faults, []);
     } finally {
       await page?.context().close();

@@ -82,8 +82,42 @@ TEST_F(ServeExport, LeavesNothingWhereAFrameFailsAndSaysWhy) {
     start();
     write_text(folder_ / "in_0002.exr", "no picture");
     ASSERT_EQ(begin("shot", "exr").status, 200);
-    EXPECT_NE(ended()["fault"].get<std::string>().find("in_0002.exr"), std::string::npos);
+    const std::string fault = ended()["fault"];
+    EXPECT_NE(fault.find("in_0002.exr"), std::string::npos);
+    EXPECT_EQ(fault.find(".aftershade-export"), std::string::npos) << fault;
     EXPECT_EQ(made(), std::vector<std::string>{});
+}
+
+/// Frames 1, 2 and 4.
+class ServeExportWithGaps : public ServeExport {
+protected:
+    void change_frames() const override { fs::remove(folder_ / "in_0003.exr"); }
+    ServeExportWithGaps() { frames_ = 4; }
+};
+
+TEST_F(ServeExportWithGaps, LeavesOutNumbersWithoutAFrameAsThePageDoes) {
+    start();
+    ASSERT_EQ(begin("shot", "png").status, 200);
+    const Json state = ended();
+    EXPECT_EQ(state["fault"], "");
+    EXPECT_EQ(state["done"], 3);
+    EXPECT_EQ(state["frames"], 3);
+    EXPECT_TRUE(fs::exists(folder_ / "shot/shot_0004.png"));
+    EXPECT_FALSE(fs::exists(folder_ / "shot/shot_0003.png"));
+    EXPECT_TRUE(get("/api/command").json()["command"].get<std::string>().ends_with(" --missing skip"));
+}
+
+TEST_F(ServeExport, GivesTheStillAsTheFileThatItWrites) {
+    start();
+    ASSERT_EQ(begin("shot", "png").status, 200);
+    ASSERT_EQ(ended()["fault"], "");
+    const std::string file = read_text_file(folder_ / "shot/shot_0001.png", ErrorKind::output);
+    EXPECT_TRUE(get("/api/picture?frame=1&format=png").body == file);
+    EXPECT_EQ(get("/api/picture?frame=1&format=png&view=before").status, 400);
+    EXPECT_EQ(get("/api/picture?frame=1&format=gif").status, 400);
+    ASSERT_EQ(set(1e9).status, 200);
+    EXPECT_EQ(get("/api/picture?frame=1&format=png").status, 409)
+        << "the last good picture is not the look's";
 }
 
 TEST_F(ServeExport, RefusesNamesThatLeaveTheFolderOtherFormatsAndLooksWithFaults) {

@@ -61,11 +61,22 @@ TEST_F(Serve, ShowsTheCaptureAndNamesTheStepWhereTheCaptureIsAtFault) {
                   std::string::npos);
     }
     EXPECT_EQ(get("/api/picture?frame=1&view=before:lens").status, 200) << "the steps before it can be drawn";
-    EXPECT_EQ(get("/api/picture?frame=1&view=tap:color_grade.color").status, 400);
+    const Answer tap = get("/api/picture?frame=1&view=tap:color_grade.color");
+    EXPECT_EQ(tap.body, get("/api/picture?frame=1&view=before:color_grade").body) << "as the final picture";
+    EXPECT_EQ(Json::parse(tap.header("X-Aftershade-Times"))["fault"]["step"], "lens");
+    EXPECT_EQ(get("/api/picture?frame=1&format=png").status, 400) << "a file is of the look";
+    const Json pixel = get("/api/probe?frame=1&x=12&y=12").json();
+    EXPECT_EQ(pixel["objects"][0]["id"], 2) << "which may take the place of the one that lacks";
+    EXPECT_EQ(pixel["result"], nullptr);
+    const std::string depth = get("/api/picture?frame=1&view=role:depth").body;
+    const Json histogram = get("/api/histogram?frame=1").json();
     EXPECT_EQ(post("/api/thumbnail?frame=1", R"({"edits": []})").status, 400)
         << "a thumbnail would show the step as if it did nothing";
     ASSERT_EQ(edit({{"op", "enable"}, {"step", 1}, {"value", false}}).status, 200);
     EXPECT_FALSE(times().contains("fault"));
+    EXPECT_EQ(get("/api/picture?frame=1&view=role:depth").body, depth) << "steps have no part in it";
+    ASSERT_EQ(edit({{"op", "enable"}, {"step", 0}, {"value", false}}).status, 200);
+    EXPECT_EQ(get("/api/histogram?frame=1").json(), histogram);
 }
 
 TEST_F(Serve, GivesTheSchemaOfItsLooks) {
