@@ -83,12 +83,13 @@ private:
         if (pass.shader_files().empty()) return;  // a clear, or the tiles of a texture: the host's text
         const TileListSpec* tiles = manifest_.tile_list_of(pass);
         if (pass.lists() && !pass_has(pass, tiles->name))
-            diagnostics_.error(tiles->place, "tile list '" + tiles->name + "': its predicate '" + pass.shader +
-                                                 "' has no function 'bool " + tiles->name + "(ivec2 tile)'");
+            diagnostics_.error(tiles->place, "tile list '" + tiles->name + "': its predicate '" +
+                                                 pass.shader + "' has no function 'bool " + tiles->name +
+                                                 "(ivec2 tile)'");
         const auto unused = [&](const Place& place, const std::string& what) {
-            diagnostics_.error(place, "pass '" + pass.name + "': " + list_of_names(pass.shader_files(), "and") +
-                                          " " + (pass.vertex() ? "do" : "does") + " not use " +
-                                          what);
+            diagnostics_.error(place, "pass '" + pass.name +
+                                          "': " + list_of_names(pass.shader_files(), "and") + " " +
+                                          (pass.vertex() ? "do" : "does") + " not use " + what);
         };
         for (const ReadSpec& read : pass.reads)
             if (!pass_has(pass, read.glsl_name()) && !pass_has(pass, read.glsl_name() + "_size"))

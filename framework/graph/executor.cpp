@@ -143,7 +143,8 @@ Executor::BoundPass Executor::bind(int index) {
     for (const Read& read : pass.reads)
         bound.textures.push_back({texture(read.texture), read.binding, read.filter, read.wrap, read.level});
     for (const Target& target : pass.targets) {
-        bound.targets.push_back({texture(target.texture), target.level.value_or(0), target.layer.value_or(0)});
+        bound.targets.push_back(
+            {texture(target.texture), target.level.value_or(0), target.layer.value_or(0)});
         bound.clear_targets.push_back(texture(target.texture));
         writes(target.texture);
     }

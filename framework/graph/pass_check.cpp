@@ -223,8 +223,8 @@ private:
         for (const Target& target : pass_.targets)
             uses.push_back({Use::As::target, target.texture.texture, target.level, target.layer, true});
         for (const ImageUse& image : pass_.images)
-            uses.push_back(
-                {Use::As::image, image.texture.texture, image.level, std::nullopt, image.access != gpu::Access::read});
+            uses.push_back({Use::As::image, image.texture.texture, image.level, std::nullopt,
+                            image.access != gpu::Access::read});
         return uses;
     }
 

@@ -2,8 +2,8 @@
 // machine code then, by the formats and filters that are bound.
 #pragma once
 
-#include <optional>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "framework/graph/frame_graph.h"

@@ -28,10 +28,10 @@ struct Window {
     bool operator==(const Window&) const = default;
 };
 
-/// Numbers that are zero at first without being written where their memory is fresh: the system makes its pages
-/// where they are first touched, so the threads that fill an image make them, not its constructor. Not a vector,
-/// which goes through the elements one by one to make, copy and end them, however little there is to do for each.
-/// [value type: safe to read from several threads]
+/// Numbers that are zero at first without being written where their memory is fresh: the system makes its
+/// pages where they are first touched, so the threads that fill an image make them, not its constructor. Not
+/// a vector, which goes through the elements one by one to make, copy and end them, however little there is
+/// to do for each. [value type: safe to read from several threads]
 template <typename Value>
 requires std::is_arithmetic_v<Value>
 class PixelArray {

@@ -95,6 +95,8 @@ void give_pixel_memory(void* memory, std::size_t bytes) noexcept {
     else std::free(memory);
 }
 
-void drop_kept_pixel_memory() noexcept { kept().drop(); }
+void drop_kept_pixel_memory() noexcept {
+    kept().drop();
+}
 
 }  // namespace aftershade

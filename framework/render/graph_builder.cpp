@@ -213,8 +213,7 @@ void GraphBuilder::require_written(const StepBuild& build, const InputSpec& inpu
 }
 
 std::optional<int> GraphBuilder::input_level(graph::TextureHandle handle) const {
-    return graph_.textures()[std::size_t(handle.texture)].desc.mips > 1 ? std::optional(0)
-                                                                      : std::nullopt;
+    return graph_.textures()[std::size_t(handle.texture)].desc.mips > 1 ? std::optional(0) : std::nullopt;
 }
 
 /// Whether somebody may look at texels that no pass has drawn. As floats, their bits are not a number, so

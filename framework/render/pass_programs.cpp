@@ -230,9 +230,8 @@ std::optional<ProgramSources> PassPrograms::in_compute(const graph::FrameGraph& 
     DrawShape shape;
     shape.first_target_unit = int(pass.images.size());
     for (const graph::Target& target : pass.targets) shape.targets.push_back(desc_of(target.texture).format);
-    shape.has_levels = std::ranges::any_of(pass.reads, [&](const graph::Read& read) {
-        return !read.level && desc_of(read.texture).mips > 1;
-    });
+    shape.has_levels = std::ranges::any_of(
+        pass.reads, [&](const graph::Read& read) { return !read.level && desc_of(read.texture).mips > 1; });
     if (pass.kind == graph::PassKind::instances)
         shape.tile_runs = shader->manifest->tile_list_of(*shader->pass)->runs();
     return in_compute_form(sources, shape, why_not);

@@ -63,7 +63,8 @@ Lines lines_of_manifest(const EffectManifest& manifest) {
                         text_of({double(t.tile.number)}) + conditions_of(t.when) + " " + t.doc);
     for (const PassSpec& p : manifest.passes) {
         std::string line = p.name + " " + list_of_names(p.shader_files()) +
-                           text_of({double(p.work.index()), double(p.max_iterations)}) + conditions_of(p.when);
+                           text_of({double(p.work.index()), double(p.max_iterations)}) +
+                           conditions_of(p.when);
         if (p.draw()) line += " over " + p.draw()->over.value_or("") + text_of({double(p.draw()->blend)});
         if (p.compute()) {
             const DispatchSpec& d = p.compute()->dispatch;

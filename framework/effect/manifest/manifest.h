@@ -248,7 +248,7 @@ struct PassSpec {
     std::variant<DrawSpec, ComputeSpec, ClearSpec, CopySpec> work;
     std::filesystem::path folder;  ///< of its shaders: the effect's, or its module's
     std::string module;            ///< that declares it; "" for the effect itself
-    std::string shader;            ///< file in that folder; "" where the host has all of the text, or none runs
+    std::string shader;  ///< file in that folder; "" where the host has all of the text, or none runs
     std::vector<ReadSpec> reads;
     std::vector<WriteSpec> writes;  ///< textures and outputs, in the order of the attachments
     std::vector<AccessSpec> images;

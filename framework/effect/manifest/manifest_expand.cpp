@@ -27,7 +27,9 @@ public:
         std::vector<PassSpec> passes;
         for (PassSpec& pass : manifest_.passes) {
             if (const TileListSpec* list = manifest_.tile_list_of(pass)) {
-                const auto fills = [&](const PassSpec& other) { return other.lists() && *other.lists() == list->name; };
+                const auto fills = [&](const PassSpec& other) {
+                    return other.lists() && *other.lists() == list->name;
+                };
                 if (std::none_of(passes.begin(), passes.end(), fills)) passes.push_back(listing_pass(*list));
                 confine(pass, *list);
             }

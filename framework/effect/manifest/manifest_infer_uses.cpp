@@ -167,7 +167,8 @@ private:
 
 bool is_pointwise(const EffectManifest& manifest) {
     return std::ranges::all_of(manifest.passes, [](const PassSpec& pass) {
-        return pass.fills_screen() && pass.images.empty() && pass.buffers.empty() && std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
+        return pass.fills_screen() && pass.images.empty() && pass.buffers.empty() &&
+               std::ranges::all_of(pass.reads, &ReadSpec::is_pixel);
     });
 }
 
