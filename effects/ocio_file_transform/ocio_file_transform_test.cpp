@@ -70,6 +70,7 @@ TEST(OcioFileTransform, SaysWhatAFileLacks) {
     const StudioConfig studio;
     write_text(studio.folder() / "grades.ccc", kCorrections);
     write_text(studio.folder() / "bad.clf", "<ProcessList>");
+    write_text(studio.folder() / "point.cube", "LUT_3D_SIZE 1\n0 0 0\n");
     const auto fault_of = [&](const std::string& file, const std::string& more) -> std::string {
         try {
             drawn("ocio_file_transform", test_light(),
@@ -81,6 +82,7 @@ TEST(OcioFileTransform, SaysWhatAFileLacks) {
     };
     EXPECT_NE(fault_of("bad.clf", "").find("bad.clf' is not a transform"), std::string::npos)
         << fault_of("bad.clf", "");
+    EXPECT_NE(fault_of("point.cube", "").find("point.cube' is not a transform"), std::string::npos);
     EXPECT_NE(fault_of("grades.ccc", R"(, "correction": "dusk")").find("dusk"), std::string::npos);
 }
 

@@ -57,6 +57,11 @@ ocio::GpuShaderDescRcPtr shader_of(const ocio::ConstProcessorRcPtr& processor, c
     return shader;
 }
 
+/// Older versions of OpenColorIO take a LUT that says nothing.
+void check_points(unsigned points) {
+    if (points < 2) throw ocio::Exception("a LUT has 1 point a side; it needs 2 at least");
+}
+
 ShaderLut curve_of(const ocio::GpuShaderDesc& shader, unsigned index) {
     const char *texture = nullptr, *sampler = nullptr;
     unsigned width = 0, height = 0;
@@ -68,6 +73,7 @@ ShaderLut curve_of(const ocio::GpuShaderDesc& shader, unsigned index) {
 #else
     shader.getTexture(index, texture, sampler, width, height, channel, interpolation);
 #endif
+    check_points(width);
     ShaderLut lut{sampler, 2, int(width), int(std::max(height, 1u)), 3, false, {}};
     if (channel == ocio::GpuShaderDesc::TEXTURE_RED_CHANNEL) lut.channels = 1;
     const float* values = nullptr;
@@ -82,6 +88,7 @@ ShaderLut cube_of(const ocio::GpuShaderDesc& shader, unsigned index, bool is_tet
     unsigned edge = 0;
     auto interpolation = ocio::INTERP_LINEAR;
     shader.get3DTexture(index, texture, sampler, edge, interpolation);
+    check_points(edge);
     ShaderLut lut{sampler, 3, int(edge), int(edge), 3, is_tetrahedral, {}};
     const float* values = nullptr;
     shader.get3DTextureValues(index, values);

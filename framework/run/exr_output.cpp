@@ -144,6 +144,17 @@ void refuse_lossy_data(const std::filesystem::path& path, const ExrContent& cont
     }
 }
 
+/// A file names one space, and the channels that are kept stay in the capture's.
+void refuse_kept_beside_converted(const FrameResult& result, const Capture& capture,
+                                  const OutputOptions& options) {
+    if (!options.keep_channels || !result.color_encoding) return;
+    throw Error(ErrorKind::output, capture.header.path.string() + ": " + spelled(Option::keep_channels) +
+                                       " keeps channels in the capture's color space, and the look converts "
+                                       "'color' to another, but a file names one space: convert back at the "
+                                       "end of the look, or write without " +
+                                       spelled(Option::keep_channels));
+}
+
 std::string overflow_text(const std::filesystem::path& path, const OutputOptions& options, int frame,
                           const std::vector<HalfOverflow>& overflows) {
     if (overflows.empty()) return "";
@@ -199,6 +210,7 @@ std::string roles_there(const std::vector<std::string>& roles) {
 
 std::string write_exr_output(const std::filesystem::path& path, const OutputOptions& options,
                              const FrameResult& result, const Capture& capture, const CaptureReader& reader) {
+    refuse_kept_beside_converted(result, capture, options);
     ExrContent content;
     const auto& source_channels = capture.header.role_channels;
     if (options.keep_channels) add_stored_channels(content, result, capture, reader);

@@ -73,6 +73,18 @@ TEST_F(OcioCommand, DrawsFramesAgainAfterAChangeOfALut) {
     EXPECT_NEAR(color("out_0001.exr").at(0, 0, 0), 0.5f * 0.1f, 1e-6);
 }
 
+TEST_F(OcioCommand, KeepsNoChannelsBesideAColorOfAnotherSpace) {
+    const std::string step = R"({ "effect": "color_convert", "name": ")";
+    const std::string there = step + R"(there", "params": { "destination": "ACEScg" } })";
+    write_text(folder_ / "there.json", R"({ "aftershade": 1, "steps": [)" + there + "] }");
+    write_text(folder_ / "back.json", R"({ "aftershade": 1, "steps": [)" + there + ", " + step +
+                                          R"(back", "params": { "source": "ACEScg" } }] })");
+    const CommandResult refused =
+        run({"there.json", "in_0001.exr", "-o", "there.exr", "--keep-channels"}, int(ExitCode::output));
+    EXPECT_NE(refused.err.find("a file names one space"), std::string::npos) << refused.err;
+    run({"back.json", "in_0001.exr", "-o", "back.exr", "--keep-channels"}, 0);
+}
+
 TEST_F(OcioCommand, DescribesTheNamesOfTheConfig) {
     const CommandResult text = run_aftershade(
         {"describe", "film", "--effect-path", "effects", "--ocio", "studio.ocio"}, folder_.path());
