@@ -112,9 +112,11 @@ class FramesForm {
     try {
       for (let wasRunning = false; ; await new Promise((done) => setTimeout(done, POLL_MS))) {
         const { runs, name, done, frames, written, fault } = await get("/api/export");
+        const isLeft = !runs && document.activeElement === this.cancel; // a hidden button loses the focus
         this.start.hidden = runs;
         this.cancel.hidden = this.bar.hidden = !runs;
         if (!runs) {
+          if (isLeft) this.name.focus();
           const isNews = isOwn || wasRunning;
           if (isNews && fault) this.#fail(`${name}: ${fault}`);
           else if (isNews) this.words.textContent = `Wrote ${written}`;

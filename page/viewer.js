@@ -347,7 +347,8 @@ export class Viewer extends EventTarget {
     pictures.addEventListener("busy", () => (this.busy.hidden = false));
     pictures.addEventListener("idle", () => (this.busy.hidden = true));
     pictures.addEventListener("fail", ({ detail }) => {
-      this.setBadge(detail.message);
+      const [first, ...rest] = detail.message.split("\n"); // a shader's tab lists all of its faults
+      this.setBadge(rest.length ? `${first} (and ${rest.length} more)` : first);
       if (detail.status === 0 && this.isPlaying) this.play(); // the program is gone: it pauses
       this.dispatchEvent(new CustomEvent("fail", { detail }));
     });

@@ -1,8 +1,7 @@
 #include "framework/serve/exporter.h"
 
-#include <cerrno>
-#include <cstdlib>
 #include <exception>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -29,14 +28,6 @@ std::string ending_of(const std::string& format) {
     throw Refusal{400, "'format' is png, exr, mp4 or mov"};
 }
 
-fs::path hidden_folder(const fs::path& folder) {
-    std::string name = (folder / ".aftershade-export-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-        throw Error(ErrorKind::output, folder.string() + ": no folder can be made in it (" +
-                                           std::generic_category().message(errno) + ")");
-    return name;
-}
-
 }  // namespace
 
 Exporter::~Exporter() {
@@ -56,7 +47,8 @@ void Exporter::start(const ExportRequest& request) {
         throw Refusal{
             409, "a video needs ffmpeg on PATH (Debian package ffmpeg); export PNG or EXR images instead"};
     if (thread_.joinable()) thread_.join();  // it has ended, since none runs
-    const fs::path folder = hidden_folder(request.look_folder);
+    auto hidden = std::make_unique<AtomicFolder>(target);
+    const fs::path folder = hidden->temporary_path();
     const fs::path result = folder / kResults / target.filename();
     ExportJob job{
         folder / "look.json", request.look_folder,
@@ -68,9 +60,8 @@ void Exporter::start(const ExportRequest& request) {
     written_ = fault_ = "";
     done_ = 0;
     frames_ = request.frames.size();
-    thread_ = std::thread([this, job = std::move(job), text = request.text, folder, target] {
-        work(job, text, folder, target);
-    });
+    thread_ = std::thread([this, job = std::move(job), text = request.text, hidden = std::move(hidden),
+                           target] { work(job, text, hidden->temporary_path(), target); });
 }
 
 void Exporter::work(const ExportJob& job, const std::string& text, const fs::path& folder,

@@ -53,7 +53,8 @@ public:
     Exporter& operator=(const Exporter&) = delete;
 
     /// Throws Refusal where one runs, for a name that is not one or is taken, and for a video without ffmpeg;
-    /// and Error(ErrorKind::output) where the folder takes no file.
+    /// and Error(ErrorKind::output) where the folder takes no file. Removes what a killed program left of an
+    /// export.
     void start(const ExportRequest& request);
     void cancel() { cancel_ = true; }
     /// {"runs", "name", "done", "frames", "written": the path, "fault"}

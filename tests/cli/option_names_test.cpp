@@ -50,6 +50,7 @@ TEST(OptionsOfMessages, OnThePageAreOptionsOfServe) {
             names.insert((*at)[1]);
     }
     EXPECT_EQ(names.erase("truth"), 1u) << "of `aftershade render`, as the message says";
+    EXPECT_EQ(names.erase("missing"), 1u) << "of `aftershade run`, as the copied command has it";
     EXPECT_GE(names.size(), 5u);
     for (const std::string& name : names) EXPECT_TRUE(known.contains(word_of(name))) << name;
 }

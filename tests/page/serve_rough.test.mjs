@@ -123,6 +123,11 @@ walk("reports an export that ends before it is looked at", async (page, folder) 
   await dialog.getByLabel("Name of the export").fill("quick");
   await dialog.getByLabel("Name of the export").press("Enter");
   await dialog.getByText(`Wrote ${join(folder, "quick")}`, { exact: true }).waitFor();
+  await page.unroute("**/api/export");
+  await dialog.getByLabel("Name of the export").fill("slow");
+  await dialog.getByLabel("Name of the export").press("Enter");
+  await dialog.getByText(`Wrote ${join(folder, "slow")}`, { exact: true }).waitFor();
+  assert.equal(await page.evaluate(() => document.activeElement.ariaLabel), "Name of the export", "for the next one");
 });
 
 walk("downloads the still that `run` writes, to the byte", async (page, folder) => {

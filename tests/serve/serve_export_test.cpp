@@ -1,5 +1,6 @@
 // Frames that the page has written: images and videos, whole or not at all.
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -77,6 +78,19 @@ TEST_F(ServeExport, LeavesNothingOfWhatIsCancelled) {
     EXPECT_EQ(ended()["fault"], "");
 }
 
+TEST_F(ServeExport, RemovesWhatAKilledProgramLeftOfOne) {
+    frames_ = 9;
+    start();
+    ASSERT_EQ(begin("shot", "png").status, 200);
+    command_->send(SIGKILL);
+    command_->wait();
+    ASSERT_EQ(made().size(), 1u) << "the hidden folder";
+    start();
+    ASSERT_EQ(begin("shot", "png").status, 200) << "the same again";
+    EXPECT_EQ(ended()["fault"], "");
+    EXPECT_EQ(made(), std::vector<std::string>{"shot"});
+}
+
 TEST_F(ServeExport, LeavesNothingWhereAFrameFailsAndSaysWhy) {
     frames_ = 3;
     start();
@@ -84,7 +98,7 @@ TEST_F(ServeExport, LeavesNothingWhereAFrameFailsAndSaysWhy) {
     ASSERT_EQ(begin("shot", "exr").status, 200);
     const std::string fault = ended()["fault"];
     EXPECT_NE(fault.find("in_0002.exr"), std::string::npos);
-    EXPECT_EQ(fault.find(".aftershade-export"), std::string::npos) << fault;
+    EXPECT_EQ(fault.find(".aftershade-"), std::string::npos) << fault;
     EXPECT_EQ(made(), std::vector<std::string>{});
 }
 
