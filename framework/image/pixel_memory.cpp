@@ -7,6 +7,8 @@
 #include <mutex>
 #include <new>
 
+#include "framework/base/memory_limit.h"
+
 namespace aftershade {
 namespace {
 
@@ -91,7 +93,9 @@ void* take_pixel_memory(std::size_t bytes, FirstValues first) {
 }
 
 void give_pixel_memory(void* memory, std::size_t bytes) noexcept {
-    if (memory && bytes >= kLeastBytes) kept().give({memory, bytes});
+    // Below a limit, what is kept could be what another allocation lacks.
+    static const bool is_limited = address_space_left().has_value();
+    if (memory && bytes >= kLeastBytes && !is_limited) kept().give({memory, bytes});
     else std::free(memory);
 }
 
