@@ -13,6 +13,9 @@ struct Layer {
 
 const Layer kNothing = Layer(vec4(0.0), 0.0, vec2(0.0));
 
+// In `hides` and `hides_quarter`, a texel for which nothing in front was gathered.
+const vec2 kNotReached = vec2(-1.0);
+
 struct Back {
     vec4 color;   // of the own surface over what is behind it
     float share;  // of the own surface

@@ -23,7 +23,7 @@ void main() {
 
     if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);
     bool is_own = radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || is_lost);
-    bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost),
+    bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost || coarse.reached < kLeastReached),
          is_narrow = is_reached_far && !is_all && texelFetch(beyond, p / kBlock, 0).g < own.coc;
     Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked, is_narrow ? kNarrow : kAll,
                                   is_own ? radius_px : kNotAsked), around_coc);

@@ -151,5 +151,25 @@ TEST(DofEdges, TextureBesideASilhouetteIsNoMixtureWhereSilhouettesAreSharp) {
         EXPECT_NEAR(out.at(stripe_x, y, 0), opacity * bar + (1 - opacity) * stripe, 0.03) << y;
 }
 
+/// In tiles near the upper right bar a blur may come from afar, so what lies in front is gathered at half
+/// size. Below row 48 it is gathered at full size.
+TEST(DofEdges, ABlurContinuesBelowTilesThatAWiderOneReaches) {
+    constexpr float wall = 0.8f, bar = 0.1f;
+    constexpr int left = 40, right = 46;
+    constexpr double radius_px = 20, wall_px = 7.8, bar_px = 3.6, upper_px = 5.7;
+    const auto depth_m = [&](double coc_px) { return float(kApertureFocusM / (1 - coc_px / radius_px)); };
+    Capture capture = picture_of_columns([&](int x) {
+        return x >= left && x < right ? Column{bar, depth_m(bar_px)} : Column{wall, depth_m(wall_px)};
+    });
+    for (int y = 0; y < 32; ++y)
+        for (int x = 60; x < 64; ++x) capture.images["depth"].at(x, y, 0) = depth_m(upper_px);
+    const Image out = through_aperture("dof", capture, radius_px, R"("blades": 0)");
+    for (int y = 40; y < 56; ++y)
+        for (int x = left - 6; x < right + 6; ++x) {
+            const double opacity = opacity_of(left, right, x, bar_px);
+            EXPECT_NEAR(out.at(x, y, 0), opacity * bar + (1 - opacity) * wall, 0.03) << x << " " << y;
+        }
+}
+
 }  // namespace
 }  // namespace aftershade::test::dof_edges

@@ -18,12 +18,12 @@ void main() {
     if (is_reached || is_blurred) prepare_outline_at(center);
     Coarse coarse = upsampled(p, own.coc, visible_coc, kQuarterAlikePx, kHalfSizePx, textureSize(plate_quarter, 0) - 1);
     bool is_found = coarse.likeness >= kLeastLikeness;
-    bool is_over_found = is_found && reach_px > kHalfSizePx, is_back_found = is_found && radius_px > kHalfSizePx;
+    bool is_over_found = is_found && coarse.reached >= kLeastReached && reach_px > kHalfSizePx, is_back_found = is_found && radius_px > kHalfSizePx;
     Gathered found = gather(Point(center, own, visible_coc, is_reached && !is_over_found ? reach_px : kNotAsked, kWide,
                                   is_blurred && !is_back_found ? radius_px : kNotAsked), around_coc);
     Layer over = is_over_found ? coarse.over : found.over;
     Back surface = is_back_found ? coarse.surface : found.surface;
     out_front = pack_light(stored(over));
     out_back = pack_light(Light(surface.color, surface.share));
-    out_hides = vec4(over.hides, own.coc, visible_coc);
+    out_hides = vec4(is_reached ? over.hides : kNotReached, own.coc, visible_coc);
 }

@@ -17,5 +17,5 @@ void main() {
                                   is_blurred ? radius_px : kNotAsked), around_coc);
     out_front_quarter = pack_light(stored(found.over));
     out_back_quarter = pack_light(Light(found.surface.color, found.surface.share));
-    out_hides_quarter = vec4(found.over.hides, own.coc, visible_coc);
+    out_hides_quarter = vec4(is_reached ? found.over.hides : kNotReached, own.coc, visible_coc);
 }
