@@ -19,7 +19,7 @@ async function answer(path, options) {
     if (error.name === "AbortError") throw error;
     throw new ApiError(
       0,
-      "the program does not answer: start `aftershade serve` again and open the address that it prints (Export, Look keeps unsaved changes as a file)",
+      "the program does not answer: start `aftershade serve` again and open the address that it prints (to keep unsaved changes, press Look in the Export dialog)",
     );
   }
 }

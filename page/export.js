@@ -34,6 +34,7 @@ const FORMATS = [
 /** All frames, which the program writes to the look's folder: whole, or not at all. */
 class FramesForm {
   #watching = false;
+  #isOwn = false; // this page started the export, which may have ended already
 
   constructor(store) {
     this.store = store;
@@ -96,28 +97,29 @@ class FramesForm {
     if (!name) return this.#fail("Type a name");
     try {
       await post("/api/export/start", { name, format: this.format.value });
-      await this.#watch(true);
+      this.#isOwn = true;
+      await this.#watch();
     } catch (error) {
       this.#fail(error.message);
     }
   }
 
-  /**
-   * Shows how far the export is until it ends, also one that was started before the page was loaded. `isOwn`: this page
-   * started it, and it may have ended already.
-   */
-  async #watch(isOwn = false) {
+  /** Shows how far the export is until it ends, also one that was started before the page was loaded. */
+  async #watch() {
     if (this.#watching) return;
     this.#watching = true;
     try {
       for (let wasRunning = false; ; await new Promise((done) => setTimeout(done, POLL_MS))) {
+        const wasOwn = this.#isOwn;
         const { runs, name, done, frames, written, fault } = await get("/api/export");
+        if (this.#isOwn !== wasOwn) continue; // this answer is older than the start
         const isLeft = !runs && document.activeElement === this.cancel; // a hidden button loses the focus
         this.start.hidden = runs;
         this.cancel.hidden = this.bar.hidden = !runs;
         if (!runs) {
           if (isLeft) this.name.focus();
-          const isNews = isOwn || wasRunning;
+          const isNews = this.#isOwn || wasRunning;
+          this.#isOwn = false;
           if (isNews && fault) this.#fail(`${name}: ${fault}`);
           else if (isNews) this.words.textContent = `Wrote ${written}`;
           break;

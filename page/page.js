@@ -277,7 +277,8 @@ store.addEventListener("change", () => {
   lookName.title = look.path;
   captureName.textContent = `${capture.width} × ${capture.height}`;
   captureName.title = capture.path;
-  mark.textContent = read_only ? "read-only" : look.is_gone ? "file is gone" : isChanged ? "unsaved" : look.has_file ? "" : "new";
+  const ofFile = look.is_gone ? "file is gone" : isChanged ? "unsaved" : look.has_file ? "" : "new";
+  mark.textContent = read_only ? "read-only" : ofFile;
   mark.classList.toggle("changed", isChanged);
   document.title = `${isChanged ? "• " : ""}${lookName.textContent} – Aftershade`;
   undoButton.disabled = !can_undo;

@@ -161,7 +161,8 @@ export class Store extends EventTarget {
       try {
         const { path, ...found } = await get("/api/changes"),
           isNew = Object.keys(found).some((key) => found[key] !== this.state[key]);
-        if (isNew || path !== this.state.look.path) await this.refresh();
+        if (found.effects_revision !== this.state.effects_revision) await this.#takeWithEffects(await get("/api/state"));
+        else if (isNew || path !== this.state.look.path) await this.refresh();
         return true;
       } catch (error) {
         this.#fail(error);
@@ -174,7 +175,7 @@ export class Store extends EventTarget {
   async refresh() {
     try {
       const state = await get("/api/state");
-      if (state.revision !== this.state.revision || state.saved_revision !== this.state.saved_revision) {
+      if (state.revision !== this.state.revision) {
         this.#done = [];
         this.#undone = [];
       }

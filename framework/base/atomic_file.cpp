@@ -192,9 +192,15 @@ AtomicFolder::AtomicFolder(fs::path final_path) : final_path_(std::move(final_pa
     for (const fs::path& stale :
          stale_temporaries(final_path_.parent_path(), kTemporaryFolderEnd, fs::file_type::directory))
         fs::remove_all(stale, failure);
-    temporary_path_ = temporary_name(final_path_, kTemporaryFolderEnd);
     constexpr mode_t kMode = 0777;  // less the user's umask
-    if (mkdir(temporary_path_.c_str(), kMode) != 0)
+    // What has the name already is of an earlier process of that number, as containers have, or was planted.
+    constexpr int kMostTries = 1000;
+    int failed = 0;
+    for (int i = 0; i == 0 || (failed && errno == EEXIST && i < kMostTries); ++i) {
+        temporary_path_ = temporary_name(final_path_, kTemporaryFolderEnd);
+        failed = mkdir(temporary_path_.c_str(), kMode);
+    }
+    if (failed)
         throw Error(ErrorKind::output, final_path_.string() + ": cannot be made: " + std::strerror(errno));
     lock_ = open(temporary_path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);

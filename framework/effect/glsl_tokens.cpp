@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "framework/document/units.h"
-#include "framework/effect/shader_source.h"
 
 namespace aftershade {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cctype>
+#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -47,6 +48,11 @@ private:
     int depth_ = 0;
     std::vector<int> at_ifs_;  // at each open #if
 };
+
+/// As the bounds of shader_source.h.
+inline constexpr std::size_t kMaxShaderTerms =
+    10'000;  ///< operators between two brackets, commas or semicolons
+inline constexpr std::size_t kMaxShaderArrayElements = 65'536;  ///< where the size is written as a number
 
 /// Holds what the author wrote against kMaxShaderTerms and kMaxShaderArrayElements. What macros make of it is
 /// not seen here.

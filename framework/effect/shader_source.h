@@ -128,9 +128,6 @@ inline constexpr std::uintmax_t kMaxShaderFileBytes = 1024 * 1024;
 inline constexpr std::size_t kMaxShaderBytes = 2 * 1024 * 1024;
 inline constexpr std::size_t kMaxShaderLines = 20'000;
 inline constexpr int kMaxIncludeDepth = 64;
-inline constexpr std::size_t kMaxShaderTerms =
-    10'000;  ///< operators between two brackets, commas or semicolons
-inline constexpr std::size_t kMaxShaderArrayElements = 65'536;  ///< where the size is written as a number
 
 struct ShaderInclude {
     std::string name;

@@ -17,6 +17,17 @@ constexpr std::size_t kLeastBytes = std::size_t{1} << 20;
 /// 8 pictures of 3840x2160 with four channels.
 constexpr std::size_t kMostKeptBytes = std::size_t{1} << 30;
 
+/// Below a limit, what is kept could be what another allocation lacks. The address sanitizer would not see a
+/// use after the end.
+bool keeps() {
+#ifdef __SANITIZE_ADDRESS__
+    return false;
+#else
+    static const bool has_no_limit = !address_space_left();
+    return has_no_limit;
+#endif
+}
+
 struct Block {
     void* memory;
     std::size_t bytes;
@@ -27,6 +38,7 @@ public:
     /// nullptr where no block has the size: then the oldest ones make room for as many bytes.
     void* take(std::size_t bytes) noexcept {
         const std::lock_guard lock(mutex_);
+        ++in_use_;
         const auto found = std::ranges::find(blocks_, bytes, &Block::bytes);
         if (found == blocks_.end()) {
             shrink_to(bytes_ > bytes ? bytes_ - bytes : 0);
@@ -39,14 +51,19 @@ public:
     }
     void give(Block block) noexcept {
         const std::lock_guard lock(mutex_);
+        --in_use_;
         try {
             blocks_.push_back(block);
+            bytes_ += block.bytes;
         } catch (const std::bad_alloc&) {
             std::free(block.memory);
-            return;
         }
-        bytes_ += block.bytes;
-        shrink_to(kMostKeptBytes);
+        shrink_to(in_use_ > 0 ? kMostKeptBytes : 0);
+    }
+    /// Of a block that take() did not have, and that the system did not give either.
+    void forget() noexcept {
+        const std::lock_guard lock(mutex_);
+        --in_use_;
     }
     void drop() noexcept {
         const std::lock_guard lock(mutex_);
@@ -64,7 +81,8 @@ private:
 
     std::mutex mutex_;
     std::deque<Block> blocks_;  // the oldest first
-    std::size_t bytes_ = 0;
+    std::size_t bytes_ = 0;     // of them
+    std::size_t in_use_ = 0;    // blocks that were taken and not given back
 };
 
 /// Never destroyed: images of static duration may end after it would.
@@ -76,31 +94,30 @@ Kept& kept() {
 }  // namespace
 
 void* take_pixel_memory(std::size_t bytes, FirstValues first) {
-    if (bytes >= kLeastBytes) {
+    const bool may_be_kept = bytes >= kLeastBytes && keeps();
+    if (may_be_kept) {
         if (void* const memory = kept().take(bytes)) {
             if (first == FirstValues::zero) std::memset(memory, 0, bytes);
             return memory;
         }
     }
-    // The system's pages are zero without being written, so calloc() costs no more than malloc().
-    void* memory = std::calloc(bytes, 1);
-    if (!memory && bytes > 0) {
-        drop_kept_pixel_memory();
-        memory = std::calloc(bytes, 1);
+    // Fresh pages are zero without being written, but calloc() writes what the C library had kept.
+    const auto allocated = [&] {
+        return first == FirstValues::zero ? std::calloc(bytes, 1) : std::malloc(bytes);
+    };
+    void* memory = allocated();
+    if (!memory && may_be_kept) {
+        kept().drop();
+        memory = allocated();
+        if (!memory) kept().forget();
     }
     if (!memory && bytes > 0) throw std::bad_alloc();
     return memory;
 }
 
 void give_pixel_memory(void* memory, std::size_t bytes) noexcept {
-    // Below a limit, what is kept could be what another allocation lacks.
-    static const bool is_limited = address_space_left().has_value();
-    if (memory && bytes >= kLeastBytes && !is_limited) kept().give({memory, bytes});
+    if (memory && bytes >= kLeastBytes && keeps()) kept().give({memory, bytes});
     else std::free(memory);
-}
-
-void drop_kept_pixel_memory() noexcept {
-    kept().drop();
 }
 
 }  // namespace aftershade

@@ -76,9 +76,7 @@ PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeli
     programs_->guard_loops();
 }
 
-PipelineRenderer::~PipelineRenderer() {
-    drop_kept_pixel_memory();
-}
+PipelineRenderer::~PipelineRenderer() = default;
 
 void PipelineRenderer::resolve(const FrameInputs& frame) {
     params_.clear();

@@ -147,7 +147,10 @@ void refuse_lossy_data(const std::filesystem::path& path, const ExrContent& cont
 /// A file names one space, and the channels that are kept stay in the capture's.
 void refuse_kept_beside_converted(const FrameResult& result, const Capture& capture,
                                   const OutputOptions& options) {
-    if (!options.keep_channels || !result.color_encoding) return;
+    const std::string own = color_interop_id({capture.header.primaries, ColorEncoding::Curve::linear, 1});
+    if (!options.keep_channels || !result.color_encoding ||
+        (!own.empty() && color_interop_id(*result.color_encoding) == own))
+        return;
     throw Error(ErrorKind::output, capture.header.path.string() + ": " + spelled(Option::keep_channels) +
                                        " keeps channels in the capture's color space, and the look converts "
                                        "'color' to another, but a file names one space: convert back at the "

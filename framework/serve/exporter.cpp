@@ -1,5 +1,6 @@
 #include "framework/serve/exporter.h"
 
+#include <array>
 #include <exception>
 #include <memory>
 #include <system_error>
@@ -89,9 +90,12 @@ void Exporter::work(const ExportJob& job, const std::string& text, const fs::pat
     std::error_code ignored;  // what stays is hidden, and no file of the user's
     fs::remove_all(folder, ignored);
     // Messages name files as they would have been called.
-    const std::string hidden = (folder / kResults).string(), shown = target.parent_path().string();
-    for (std::size_t at = 0; (at = fault.find(hidden, at)) != std::string::npos; at += shown.size())
-        fault.replace(at, hidden.size(), shown);
+    const std::array<std::pair<fs::path, fs::path>, 2> hidden_and_shown = {
+        {{folder / kResults, target.parent_path()}, {job.look, job.look_folder / "the look"}}};
+    for (const auto& [hidden, shown] : hidden_and_shown)
+        for (std::size_t at = 0; (at = fault.find(hidden.string(), at)) != std::string::npos;
+             at += shown.string().size())
+            fault.replace(at, hidden.string().size(), shown.string());
     const std::lock_guard lock(mutex_);
     runs_ = false;
     fault_ = fault;

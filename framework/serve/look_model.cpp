@@ -239,12 +239,13 @@ void LookModel::save(const std::string& name) {
 
 void LookModel::follow_file() {
     const std::lock_guard lock(mutex_);
-    if (file_ != File::there || texts_[at_] != saved_text_) return;
-    std::string fault;
-    std::string on_disk = read_regular_file(path_, kMaxDocumentBytes, fault);
+    if (file_ != File::there) return;
     std::error_code failure;
     is_gone_ =
         std::filesystem::symlink_status(path_, failure).type() == std::filesystem::file_type::not_found;
+    if (texts_[at_] != saved_text_) return;
+    std::string fault;
+    std::string on_disk = read_regular_file(path_, kMaxDocumentBytes, fault);
     if (!fault.empty() || on_disk == saved_text_) return;
     saved_text_ = on_disk;
     Binding binding = binding_of(on_disk, Origin::disk);

@@ -220,7 +220,7 @@ std::string PictureMaker::file_of(const Scaled& scaled) const {
 MadePicture PictureMaker::make(const PictureRequest& request) {
     const auto start = Clock::now();
     Scaled& scaled = draw(request);
-    const ShownView view = shown(scaled, request);
+    const ShownView view = request.is_file ? ShownView{} : shown(scaled, request);
     MadePicture made;
     made.png = request.is_file ? file_of(scaled) : quick_png(view.picture, !is_false_color(request.view));
     nlohmann::ordered_json times;

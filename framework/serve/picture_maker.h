@@ -31,7 +31,7 @@ struct PictureRequest {
     std::string view = "final";  ///< a view of view_picture(), or truth:NAME, difference:NAME
     double exposure_ev = 0;
     bool continues = false;  ///< history continues where the frame before this one was drawn last
-    bool is_file = false;    ///< the PNG that `run` writes of the final picture
+    bool is_file = false;    ///< the PNG that `run` writes of the final picture at that scale
 };
 
 struct MadePicture {

@@ -26,6 +26,7 @@ std::string remedy(const DrawerEnd& end) {
 bool replaces(const DrawRequest& newer, const DrawRequest& older) {
     using Kind = DrawRequest::Kind;
     return newer.kind == Kind::picture && older.kind == Kind::picture && newer.view == older.view &&
+           newer.is_file == older.is_file &&
            (newer.scale == older.scale || older.revision < newer.revision);
 }
 
@@ -78,7 +79,7 @@ void PictureQueue::note(const DrawRequest& request, const Response& response) {
     if (response.status != 200 || request.kind != DrawRequest::Kind::picture || request.scale != 1) return;
     if (response.headers.contains(kFaultHeader)) return;
     listener_.drawn(request);
-    if (request.view != "final") return;
+    if (request.view != "final" || request.is_file) return;
     const std::lock_guard lock(mutex_);
     last_final_ = response;
 }

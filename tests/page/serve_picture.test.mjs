@@ -375,7 +375,10 @@ inPage("shows the capture and marks the step where the frame lacks what the step
   await mark.getByText(/object 4000 has no pixel with light/).waitFor();
   await drawn(page);
   await frame(page);
-  assert.match(await page.locator(".badge").innerText(), /^capture without steps: this frame lacks what color_grade needs$/);
+  assert.match(
+    await page.locator(".badge").innerText(),
+    /^capture without steps: this frame lacks what color_grade needs$/,
+  );
   const shown = await middle(page);
   assert.equal(await step(page, "vignette").locator(".step-fault").isVisible(), false);
   await set(0.3);

@@ -1,4 +1,4 @@
-// What goes wrong around the page: a program that ends, files that go, a second page, a frame without what a step needs.
+// What goes wrong around the page: a program that ends, files that go, a second page, a frame without what it needs.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -17,7 +17,8 @@ const withFile = (folder) => {
 const strength = (page, value) => edit(page, { op: "set", step: 0, param: "strength", value });
 const notice = (page, words) =>
   page.waitForFunction((text) => document.getElementById("notice").textContent.includes(text), words);
-const mark = (page, words) => page.locator(".mark", { hasText: new RegExp(`^${words}$`) }).waitFor({ state: "attached" });
+const mark = (page, words) =>
+  page.locator(".mark", { hasText: new RegExp(`^${words}$`) }).waitFor({ state: "attached" });
 async function downloaded(page, name) {
   const coming = page.waitForEvent("download");
   await page.getByRole("button", { name, exact: true }).click();
