@@ -6,6 +6,8 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -145,6 +147,87 @@ TEST(OcioView, EqualsOpenColorIosProcessorForAViewByALutAndForLooks) {
     EXPECT_LT(largest_error(warm, by_cpu(light, config->getProcessor(look)), Measure::display),
               kDisplayLimit);
     EXPECT_GT(largest_error(warm, film, Measure::display), 0.01);
+}
+
+/// A view from linear Rec. 709 by these LUTs of the studio's folder, against OpenColorIO's CPU processor.
+double error_by_luts(StudioConfig& studio,
+                     const std::vector<std::pair<const char*, ocio::Interpolation>>& luts,
+                     const Image& light) {
+    const auto config = studio.config()->createEditableCopy();
+    config->setProcessorCacheFlags(ocio::PROCESSOR_CACHE_OFF);
+    const auto all = ocio::GroupTransform::Create();
+    for (const auto& [name, interpolation] : luts) {
+        const auto file = ocio::FileTransform::Create();
+        file->setSrc(name);
+        file->setInterpolation(interpolation);
+        all->appendTransform(file);
+    }
+    const auto space = ocio::ColorSpace::Create();
+    space->setName("by_luts");
+    space->setTransform(all, ocio::COLORSPACE_DIR_FROM_REFERENCE);
+    config->addColorSpace(space);
+    config->addDisplayView("Monitor", "LUTs", "by_luts", "");
+    const std::string path = studio.folder() / "by_luts.ocio";
+    std::ofstream(path) << *config;
+    const std::string reference =
+        R"(, "source": ")" + std::string(config->getRoleColorSpace("reference")) + "\"";
+    return largest_error(drawn("ocio_view", light, params_of(path, "Monitor", "LUTs", reference), "display"),
+                         by_cpu(light, config->getProcessor(all)), Measure::display);
+}
+
+/// OpenColorIO's cache of processors takes LUTs of one size for the same.
+TEST(OcioView, KeepsTheNumbersOfTwoCubesOfOneSize) {
+    StudioConfig studio;
+    const auto write_cube = [&](const char* name, const auto& value_of) {
+        std::ofstream file(studio.folder() / "luts" / name);
+        file << "LUT_3D_SIZE 9\n";
+        for (int b = 0; b < 9; ++b)
+            for (int g = 0; g < 9; ++g)
+                for (int r = 0; r < 9; ++r)
+                    file << value_of(r / 8.0, g / 8.0) << " " << value_of(g / 8.0, b / 8.0) << " "
+                         << value_of(b / 8.0, r / 8.0) << "\n";
+    };
+    write_cube("a.cube", [](double own, double next) { return own * (0.5 + 0.5 * next); });
+    write_cube("b.cube", [](double own, double next) { return 1 - own * own * (1 - 0.25 * next); });
+    std::ofstream(studio.folder() / "luts/mid.cube") << "LUT_1D_SIZE 3\n0 0 0\n.6 .5 .4\n1 1 1\n";
+    EXPECT_LT(error_by_luts(studio,
+                            {{"a.cube", ocio::INTERP_LINEAR},
+                             {"mid.cube", ocio::INTERP_LINEAR},
+                             {"b.cube", ocio::INTERP_TETRAHEDRAL}},
+                            test_light()),
+              kDisplayLimit);
+}
+
+/// A contour of a false colour: a few points of a long LUT, between two numbers of a curve's table.
+TEST(OcioView, ShowsALineOfAFewPointsOfALongLut) {
+    StudioConfig studio;
+    constexpr int kPoints = 4096, kFirst = 2817, kLast = 2821;
+    {
+        std::ofstream file(studio.folder() / "luts/line.cube");
+        file << "LUT_1D_SIZE " << kPoints << "\n";
+        for (int i = 0; i < kPoints; ++i) {
+            const double value = i >= kFirst && i <= kLast ? 1 : 0.5 * i / (kPoints - 1);
+            file << value << " " << value << " " << value << "\n";
+        }
+    }
+    Image light(64, 1, 4);
+    for (int x = 0; x < 64; ++x)
+        for (int c = 0; c < 4; ++c)
+            light.at(x, 0, c) = c == 3 ? 1 : float(kFirst - 30 + x) / float(kPoints - 1);
+    EXPECT_LT(error_by_luts(studio, {{"line.cube", ocio::INTERP_LINEAR}}, light), kDisplayLimit);
+}
+
+/// --on-nan would miss a NaN that had become a number.
+TEST(OcioView, ReadsNoNumberForNanFromATable) {
+    Image light(2, 1, 4);
+    for (int c = 0; c < 3; ++c) light.at(0, 0, c) = std::numeric_limits<float>::quiet_NaN();
+    for (int c = 0; c < 3; ++c) light.at(1, 0, c) = 0.5f;
+    const Image encoded =
+        LookRunner(look_of_step("color_convert", R"("destination": "sRGB - Texture")"), gpu::test_backend())
+            .run(capture_of(light))
+            .images.at("color");
+    EXPECT_TRUE(std::isnan(encoded.at(0, 0, 0)));
+    EXPECT_NEAR(encoded.at(1, 0, 0), 0.7353570, 1e-4);
 }
 
 TEST(OcioView, ExposesBeforeTheViewAndRaisesAfterIt) {

@@ -13,6 +13,7 @@ namespace aftershade {
 
 namespace {
 
+static_assert(kColorTableRow == 1 << 12, "the texts below shift by 12");
 constexpr std::string_view kTexel = R"(vec3 $texel(int i) {
     return texelFetch($table, ivec2((i + $first) & ($row - 1), (i + $first) >> 12), 0).rgb;
 }
@@ -60,7 +61,7 @@ constexpr std::string_view kBitCurve = R"(float $at(float x, int first) {
     uint bits = floatBitsToUint(x);
     int i = int(bits >> $shift) + first;
     vec2 line = texelFetch($table, ivec2(i & ($row - 1), i >> 12), 0).rg;
-    return line.x + line.y * float(bits & ((1u << $shift) - 1u));
+    return isnan(x) ? x : line.x + line.y * float(bits & ((1u << $shift) - 1u));
 }
 vec3 $name(vec3 rgb) { return vec3($at(rgb.r, $red), $at(rgb.g, $green), $at(rgb.b, $blue)); }
 )";

@@ -132,16 +132,24 @@ std::optional<std::string> text_of_part(const ocio::ConstConfigRcPtr& config,
     return glsl_with_table(shader->getShaderText(), luts, table, texels);
 }
 
-std::variant<ColorTransform, ColorFault> transform_of(const ocio::ConstConfigRcPtr& config,
+/// The cache of processors of OpenColorIO 2.1 takes two LUTs of one size and one range for the same.
+ocio::ConstConfigRcPtr without_cache(const ocio::ConstConfigRcPtr& config) {
+    const ocio::ConfigRcPtr copy = config->createEditableCopy();
+    copy->setProcessorCacheFlags(ocio::PROCESSOR_CACHE_OFF);
+    return copy;
+}
+
+std::variant<ColorTransform, ColorFault> transform_of(const ocio::ConstConfigRcPtr& given,
                                                       const ocio::ConstProcessorRcPtr& processor,
                                                       const ColorRequest& request) {
+    const ocio::ConstConfigRcPtr config = without_cache(given);
     ColorTransform transform;
     const std::string table = request.function + "_table";
     std::vector<float> texels;
     std::string calls;
     int parts = 0;
     transform.channels = 2;
-    for (const TransformPart& part : parts_of(config, processor, request.is_view())) {
+    for (const TransformPart& part : parts_of(config, processor, request.is_view() && !request.inverse)) {
         const std::string name = request.function + "_" + std::to_string(parts++);
         const bool is_ours = part.curve || !part.text.empty();
         const auto text = part.curve ? glsl_of_curve(*part.curve, name, table, texels)

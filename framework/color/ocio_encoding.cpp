@@ -121,8 +121,8 @@ std::optional<ColorEncoding> encoding_of_space(const OcioConfig& open, const std
 
 namespace {
 
-/// Of a view's space that is no curve and matrix, such as a LUT: its numbers are for the display all the
-/// same, which has a space of its name, or a name that is known.
+/// The encoding for a view whose space is not a curve and a matrix, such as a LUT. Its numbers are for the
+/// display, which has a space of its name or a known name.
 std::optional<ColorEncoding> encoding_of_display(const OcioConfig& open, const std::string& display,
                                                  const std::string& space_of_view) {
     const auto space = open.config->getColorSpace(space_of_view.c_str());

@@ -74,8 +74,8 @@ std::vector<float> applied(const ocio::ConstProcessorRcPtr& processor, const std
 }
 
 /// The red modifier of the ACES 1 RRT. OpenColorIO's text has the angle of the whole circle and all four
-/// pieces of the spline around red, whose halves are the same; here is the half up to its end at 67 degrees.
-/// Polynomial for the angle: Abramowitz and Stegun, 4.4.47.
+/// pieces of the spline around red, whose halves are the same; here is the half up to its end at 67.5
+/// degrees. Polynomial for the angle: Abramowitz and Stegun, 4.4.47.
 constexpr std::string_view kRedModifier10 = R"(vec3 $name(vec3 rgb) {
     float along = 2.0 * rgb.r - (rgb.g + rgb.b), across = abs(1.7320508 * (rgb.g - rgb.b));
     float ahead = max(along, 1e-30);
@@ -103,8 +103,10 @@ public:
         : processor_(processor), shift_(shift), rgb_(applied(processor_, numbers(shift, 0))) {}
 
     std::optional<BitCurve> curve() const {
-        for (const double share : {0.25, 0.5, 0.75})
-            if (!is_near(share)) return std::nullopt;
+        // A LUT of 4096 points has 32 of them between two of these numbers in [0.5, 1].
+        constexpr int kPlaces = 32;
+        for (int i = 1; i < kPlaces; ++i)
+            if (!is_near(double(i) / kPlaces)) return std::nullopt;
         BitCurve curve{shift_, {}};
         for (std::size_t c = 0; c < (is_common() ? 1 : 3); ++c)
             for (std::size_t i = 0; i < size(); ++i)
@@ -134,7 +136,7 @@ private:
                 const double expected = double(exact[i * 3 + c]);
                 const double line = double(rgb_[i * 3 + c]) + share * double(way(i, c));
                 const double limit = kCurveTolerance * std::max(std::abs(expected), 0.01);
-                if (std::abs(expected) < double(kLargest) && !(std::abs(line - expected) <= limit))
+                if (std::abs(expected) < double(kLargest) / 2 && !(std::abs(line - expected) <= limit))
                     return false;
             }
         return true;

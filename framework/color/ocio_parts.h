@@ -21,7 +21,8 @@ struct TransformPart {
     std::string_view text;
 };
 
-/// Of a value, or of 0.01 where that is more: of a curve, and of all parts together.
+/// Shares of a value, or of 0.01 where that is more. For a view kPartsTolerance is a difference of the
+/// display's numbers.
 inline constexpr double kCurveTolerance = 5e-5;
 inline constexpr float kPartsTolerance = 2.5e-4f;
 

@@ -38,7 +38,7 @@ class PixelArray {
 public:
     PixelArray() = default;
     explicit PixelArray(std::size_t count, FirstValues first = FirstValues::zero)
-        : values_(static_cast<Value*>(take_pixel_memory(count * sizeof(Value), first))), count_(count) {}
+        : values_(static_cast<Value*>(take_pixel_memory(count, sizeof(Value), first))), count_(count) {}
     PixelArray(const PixelArray& other) : PixelArray(other.count_, FirstValues::unwritten) {
         if (count_ > 0) std::memcpy(values_, other.values_, count_ * sizeof(Value));
     }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <mutex>
 #include <new>
 
@@ -93,7 +94,9 @@ Kept& kept() {
 
 }  // namespace
 
-void* take_pixel_memory(std::size_t bytes, FirstValues first) {
+void* take_pixel_memory(std::size_t count, std::size_t size, FirstValues first) {
+    if (count > std::numeric_limits<std::size_t>::max() / size) throw std::bad_alloc();
+    const std::size_t bytes = count * size;
     const bool may_be_kept = bytes >= kLeastBytes && keeps();
     if (may_be_kept) {
         if (void* const memory = kept().take(bytes)) {

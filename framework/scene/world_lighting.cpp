@@ -142,7 +142,9 @@ double World::visible_ambient(const Surface& surface) const {
         const glm::dvec2 on_disk =
             on_aperture(shifted_hammersley(std::uint32_t(i), std::uint32_t(rays), seed), 0, 0);
         const double height = std::sqrt(std::max(1 - glm::dot(on_disk, on_disk), 0.0));
-        seen += light_through(from, from + kFar_m * (frame * dvec3(on_disk, height)));
+        const dvec3 way = frame * dvec3(on_disk, height);
+        // A mesh does not hide what its bent normal sees behind the flat triangle.
+        seen += glm::dot(way, surface.geometric_normal) > 0 ? light_through(from, from + kFar_m * way) : 1;
     }
     return seen / rays;
 }
@@ -184,7 +186,8 @@ void World::add_light(std::size_t index, const Surface& surface, const dvec3* to
 Shading World::light(const Surface& surface, const dvec3* to_eye) const {
     Shading shading;
     shading.irradiance = scene().ambient;
-    if (scene().ambient_rays > 0) shading.irradiance *= visible_ambient(surface);
+    if (scene().ambient_rays > 0 && scene().ambient != dvec3(0))
+        shading.irradiance *= visible_ambient(surface);
     for (std::size_t i = 0; i < state_.lights.size(); ++i) add_light(i, surface, to_eye, shading);
     return shading;
 }

@@ -1,7 +1,10 @@
 #include "framework/visibility/gpu_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdint>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -78,7 +81,7 @@ public:
         passes_.run(executor_);
         check_loops(executor_, unfinished_, scene_path_);
     }
-    /// Of each pixel of the band: the sum of its samples' light, and the number of those that met something.
+    /// The sum of the samples' light for each pixel of the band; w: how many of them met something.
     std::vector<vec4> sums() { return values_of<vec4>(executor_, sums_); }
 
 private:
@@ -125,7 +128,9 @@ scene::LitSamples light_samples(Passes& passes, const scene::SceneRenderer& rend
                                 const scene::VisibilitySettings& settings, std::size_t max_buffer_bytes) {
     const auto width = std::size_t(renderer.width_px());
     const scene::TruthSettings truth = truth_of(settings);
-    const scene::ShadingGrids grids(renderer, frame, {});
+    scene::ShadingGridSettings one_cell;  // of each triangle, since no cell is read here
+    one_cell.rate = 1e-6;
+    const scene::ShadingGrids grids(renderer, frame, one_cell);
     const GpuScene triangles = make_gpu_scene(renderer, grids, frame);
     const SampleSettings values =
         sample_settings(renderer, triangles, grids.reference().camera, settings.samples);

@@ -173,17 +173,18 @@ float visible_ambient(Point point, uint rays) {
     float seen = 0.0;
     for (uint i = 0u; i < rays; ++i) {
         vec2 at = on_disk(shifted_hammersley(i, rays, point.seed));
-        seen += light_through(from, frame * vec3(at, sqrt(max(1.0 - dot(at, at), 0.0))), 1e30);
+        vec3 way = frame * vec3(at, sqrt(max(1.0 - dot(at, at), 0.0)));
+        seen += dot(way, point.geometric_normal) > 0.0 ? light_through(from, way, 1e30) : 1.0;
     }
     return seen / float(rays);
 }
 
-// Of `count` lights from the `first`, and of the ambient light, whose rays are ambient.w.
+// Light from `count` lights, beginning with `first`, and from the ambient light, whose rays are ambient.w.
 vec3 light_at(Point point, vec3 eye, vec4 ambient, uint first, uint count) {
     Material material = materials[point.material];
     vec3 to_eye = normalize(eye - point.position);
     vec3 irradiance = ambient.rgb, reflected = vec3(0.0);
-    if (ambient.w > 0.0) irradiance *= visible_ambient(point, uint(ambient.w));
+    if (ambient.w > 0.0 && ambient.rgb != vec3(0.0)) irradiance *= visible_ambient(point, uint(ambient.w));
     for (uint i = first; i < first + count; ++i) add_light(lights[i], material, point, to_eye, irradiance, reflected);
     return point.albedo * irradiance + reflected + material.emission.rgb;
 }

@@ -77,7 +77,7 @@ GpuLight light_of(const scene::Light& light, const scene::LightState& now) {
 static_assert(int(scene::LightKind::point) == 0 && int(scene::LightKind::directional) == 1 &&
                   int(scene::LightKind::area) == 2 && int(scene::LightPattern::Kind::edge) == 1 &&
                   int(scene::LightPattern::Kind::cosine) == 2,
-              "as shade.comp has them");
+              "as light.glsl has them");
 
 void add_object(LightScene& result, std::vector<GpuBlocker>& blockers, std::vector<scene::Bounds>& bounds,
                 const scene::Scene& scene, const scene::ShadingGrids& grids, std::size_t index) {

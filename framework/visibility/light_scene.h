@@ -1,4 +1,5 @@
-// A scene at the frame's own time as shade.comp reads it; for the sources of this folder.
+// A scene at the frame's own time as shade.comp reads it, and the lights and materials of light_samples.comp;
+// for the sources of this folder.
 #pragma once
 
 #include <array>

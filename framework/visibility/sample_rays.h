@@ -36,7 +36,7 @@ struct SampleSettings {
 SampleSettings sample_settings(const scene::SceneRenderer& renderer, const GpuScene& scene,
                                const scene::CameraState& reference, int samples);
 
-/// Of sample `sample` of the pixels of some rows. `moments` are those of the sample.
+/// The rays of sample `sample` through the pixels of some rows. `moments` are those of the sample.
 std::vector<GpuRay> rays_of_band(const scene::SceneRenderer& renderer, int frame,
                                  const scene::VisibilitySettings& settings, int sample,
                                  const std::vector<scene::World>& moments, int first_row, int rows);

@@ -163,7 +163,8 @@ class Baker:
             lut.setData(cube.astype(numpy.float32).ravel())
             lut.setInterpolation(ocio.INTERP_TETRAHEDRAL)
             whole = self.source.getProcessor(ocio.GroupTransform([to_p3, *shaper.before_cube(), lut]))
-            error = float(numpy.abs(numpy.clip(applied(whole, colors), 0, 1) - exact).max())
+            apart = numpy.abs(numpy.clip(applied(whole, colors), 0, 1) - exact)
+            error = float(numpy.nan_to_num(apart, nan=numpy.inf).max())
             if best is None or error < best[0]:
                 best = error, shaper, cube
         assert best is not None
