@@ -169,9 +169,8 @@ double error_by_luts(StudioConfig& studio,
     config->addDisplayView("Monitor", "LUTs", "by_luts", "");
     const std::string path = studio.folder() / "by_luts.ocio";
     std::ofstream(path) << *config;
-    const std::string reference =
-        R"(, "source": ")" + std::string(config->getRoleColorSpace("reference")) + "\"";
-    return largest_error(drawn("ocio_view", light, params_of(path, "Monitor", "LUTs", reference), "display"),
+    const std::string params = params_of(path, "Monitor", "LUTs", R"(, "source": "ACES2065-1")");
+    return largest_error(drawn("ocio_view", light, params, "display"),
                          by_cpu(light, config->getProcessor(all)), Measure::display);
 }
 

@@ -26,8 +26,7 @@ std::string remedy(const DrawerEnd& end) {
 bool replaces(const DrawRequest& newer, const DrawRequest& older) {
     using Kind = DrawRequest::Kind;
     return newer.kind == Kind::picture && older.kind == Kind::picture && newer.view == older.view &&
-           newer.is_file == older.is_file &&
-           (newer.scale == older.scale || older.revision < newer.revision);
+           newer.is_file == older.is_file && (newer.scale == older.scale || older.revision < newer.revision);
 }
 
 }  // namespace
