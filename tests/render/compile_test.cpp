@@ -116,8 +116,8 @@ TEST_F(Compile, RefusesATapOfAnInputOrOfNothing) {
     effects_.add(
         "pile",
         R"("inputs": { "color": { "role": "color" } }, "outputs": { "color": { "role": "color" } },
-        "textures": { "pages": { "format": "rgba16f", "layers": 3, "clear": 0, "doc": "Pages." } },
-        "passes": [ { "name": "main", "shader": "main.frag", "reads": ["color", "pages"], "writes": ["color"] } ])",
+        "textures": { "pages": { "format": "rgba16f", "layers": 3, "doc": "Pages." } },
+        "passes": [ { "name": "blank", "kind": "clear", "writes": ["pages"], "value": [0] }, { "name": "main", "shader": "main.frag", "reads": ["color", "pages"], "writes": ["color"] } ])",
         "void main() { out_color = texelFetch(pages, ivec3(0), 0) + texelFetch(color, ivec2(0), 0); }\n");
     EXPECT_EQ(Bound(effects_, look_of(R"({ "effect": "pile" })"), {{}, {"pile.pages"}}).faults(),
               "taps pile.pages: error: pile.pages has 3 layers, and a tap shows a texture of one; tap what a "
