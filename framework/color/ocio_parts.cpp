@@ -204,8 +204,8 @@ public:
         parts_.push_back({config_->getProcessor(transform), std::nullopt, text});
     }
 
-    /// Of transforms that are curves of each channel. Those that a table would hardly shorten stay exact, but
-    /// for a display's encoding, behind which nothing is left that could make its error larger.
+    /// Adds transforms that are curves of each channel. Those that a table would hardly shorten stay exact,
+    /// but for a display's encoding, behind which nothing is left that could make its error larger.
     void add_run(const ocio::GroupTransformRcPtr& run, int cost, bool is_encoding) {
         const auto processor = config_->getProcessor(run);
         auto curve = cost > (is_encoding ? 5 : 12) ? curve_of(processor) : std::nullopt;

@@ -61,7 +61,7 @@ public:
         }
         shrink_to(in_use_ > 0 ? kMostKeptBytes : 0);
     }
-    /// Of a block that take() did not have, and that the system did not give either.
+    /// Takes back the count of take() if the system has no memory either.
     void forget() noexcept {
         const std::lock_guard lock(mutex_);
         --in_use_;

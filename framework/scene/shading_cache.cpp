@@ -20,7 +20,7 @@ constexpr Names<ShadingCache, 5> kCacheNames = {{{ShadingCache::global, "global"
                                                  {ShadingCache::lru, "lru"},
                                                  {ShadingCache::fifo, "fifo"}}};
 
-/// Of an id and of its shading's address.
+/// Bytes of an id and its shading's address.
 constexpr std::uint64_t kEntryBytes = 8;
 
 /// Calls visit(sample) for the samples of a tile that met something.

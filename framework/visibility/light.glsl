@@ -20,7 +20,7 @@ layout(std430, binding = 5) readonly buffer Lights { Light lights[]; };
 const float kPi = 3.14159265358979;
 const float kPoint = 0.0, kDirectional = 1.0;  // kinds; 2: area
 const float kEdge = 1.0, kCosine = 2.0;        // kinds of patterns; 0: none
-// Of a position, over the size of its coordinates: where a ray leaves a surface that must not hide itself.
+// Precision of a position, over the size of its coordinates. A ray starts so far off its surface.
 const float kPrecision = 1e-5;
 
 struct Point {
@@ -74,7 +74,7 @@ float polygon_cosine(Light light, Point point) {
     return abs(sum + edge_cosine(leaves, enters, point.normal)) / 2.0;
 }
 
-// Of an area light: the share of a grid of its points that shines through; as World::visible_part().
+// The share of an area light that shines through, by a grid of its points; as World::visible_part().
 float visible_part(Light light, Point point) {
     int side = int(light.direction.w), count = 0;
     vec3 from = off_surface(point);

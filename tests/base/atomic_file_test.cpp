@@ -342,5 +342,18 @@ TEST(AtomicFolders, ClearWhatKilledProcessesLeft) {
     EXPECT_FALSE(fs::exists(folder / stale));
 }
 
+/// A container's processes have the same numbers after each start.
+TEST(AtomicFolders, PassByWhatAnEarlierProcessOfTheirNumberLeft) {
+    const TemporaryFolder folder;
+    const std::string own = AtomicFolder(folder / "made").temporary_path().filename().string();
+    const std::size_t number = own.rfind('-') + 1, end = own.find_first_not_of("0123456789", number);
+    const int last = std::stoi(own.substr(number, end - number));
+    const fs::path left = folder / (own.substr(0, number) + std::to_string(last + 1) + own.substr(end));
+    fs::create_directory(left);
+    const AtomicFolder next(folder / "made");
+    EXPECT_NE(next.temporary_path(), left);
+    EXPECT_TRUE(fs::exists(left)) << "it may be of a process that runs";
+}
+
 }  // namespace
 }  // namespace aftershade::test
