@@ -88,7 +88,7 @@ public:
         for (const RenderedImage& image : traced.rendered.images)
             approved.push_back(approved_images(result.test->goldens, image.name, options_.run.environment));
         refuse(result, traced.rendered.images, approved);
-        if (result.verdict != Verdict::same) return;
+        if (result.verdict > Verdict::warning) return;
         std::error_code failure;
         fs::create_directories(result.test->goldens, failure);
         if (failure) throw Error(ErrorKind::output, result.test->goldens.string() + ": " + failure.message());
@@ -292,7 +292,7 @@ GoldenApproval approve_goldens(const GoldenSuite& suite, const GoldenApproveOpti
             result.verdict = rendered.verdict;
             result.messages = rendered.messages;
             result.seconds = rendered.seconds;
-            if (result.verdict == Verdict::same)
+            if (result.verdict <= Verdict::warning)
                 with_case_faults(result.verdict, result.messages,
                                  [&] { approver.take(result, traced, tracer); });
         }

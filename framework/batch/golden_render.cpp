@@ -103,6 +103,8 @@ void judge_end(const WorkerResult& result, std::list<std::string>& lines, Render
     else if (lines.empty()) lines.push_back("rendering ended with code " + std::to_string(result.exit_code));
 }
 
+/// A worker that a signal ends is started once more: drivers crash by accidents of their threads, and the
+/// same picture is expected of every run.
 void run_look(const GoldenCase& test, const GoldenRenderOptions& options, const fs::path& work,
               const std::atomic<bool>& interrupt, RenderedCase& rendered) {
     WorkerCommand command;
@@ -118,7 +120,18 @@ void run_look(const GoldenCase& test, const GoldenRenderOptions& options, const 
         lines.emplace_back(line);
         if (lines.size() > kMaxMessages) lines.pop_front();
     };
-    judge_end(run_worker(command, listener, &interrupt), lines, rendered);
+    WorkerResult result = run_worker(command, listener, &interrupt);
+    std::string crash;
+    if (result.end == WorkerEnd::signalled && !interrupt) {
+        crash = "rendering: " + describe(result) + "; it was run once more";
+        lines.clear();
+        result = run_worker(command, listener, &interrupt);
+    }
+    judge_end(result, lines, rendered);
+    if (!crash.empty()) {
+        lines.push_front(crash);
+        rendered.verdict = std::max(rendered.verdict, Verdict::warning);
+    }
     rendered.messages.assign(lines.begin(), lines.end());
 }
 
@@ -198,7 +211,7 @@ RenderedCase render_case(const GoldenCase& test, const GoldenRenderOptions& opti
     if (!rendered.absent.empty()) return rendered;
     for (const char* folder : {"render", "taps", "images"}) fs::create_directories(work / folder);
     run_look(test, options, work, interrupt, rendered);
-    if (rendered.verdict != Verdict::same || rendered.interrupted) return rendered;
+    if (rendered.verdict > Verdict::warning || rendered.interrupted) return rendered;
     try {
         take_images(test, frames, work, rendered);
     } catch (const Error& error) {

@@ -29,11 +29,13 @@ struct RenderedImage {
 };
 
 struct RenderedCase {
-    /// same: rendered. failure: an effect or a document is wrong, or the time is over. file_error: the
-    /// capture cannot be read, there is no GL, or nothing can be written.
+    /// same: rendered. warning: rendered, after a first run that crashed. failure: an effect or a document is
+    /// wrong, or the time is over. file_error: the capture cannot be read, there is no GL, or nothing can be
+    /// written.
     Verdict verdict = Verdict::same;
     std::string absent;  ///< what is not there, so that an optional case is skipped; "" otherwise
-    std::vector<std::string> messages;  ///< of the worker: warnings, and everything where it failed
+    /// Of the worker: warnings, and everything where it failed.
+    std::vector<std::string> messages;
     std::vector<RenderedImage> images;  ///< every output and tap of every frame; none after a failure
     std::string command;                ///< for a shell
     double seconds = 0;                 ///< wall time of the worker
