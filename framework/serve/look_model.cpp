@@ -246,7 +246,13 @@ void LookModel::follow_file() {
     if (texts_[at_] != saved_text_) return;
     std::string fault;
     std::string on_disk = read_regular_file(path_, kMaxDocumentBytes, fault);
-    if (!fault.empty() || on_disk == saved_text_) return;
+    if (is_gone_) fault.clear();
+    if (fault != file_fault_) {
+        file_fault_ = fault;
+        ++revision_;
+        bind();
+    }
+    if (is_gone_ || !fault.empty() || on_disk == saved_text_) return;
     saved_text_ = on_disk;
     Binding binding = binding_of(on_disk, Origin::disk);
     change(std::move(on_disk), std::move(binding));
@@ -342,7 +348,11 @@ nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
     state["can_undo"] = at_ > 0;
     state["can_redo"] = at_ + 1 < texts_.size();
     state["text"] = texts_[at_];
-    state["faults"] = faults_json(faults_);
+    Diagnostics faults = faults_;
+    if (!file_fault_.empty())
+        faults.warning({path_}, "changed on disk, and what is there was not taken over (" + file_fault_ +
+                                    "); the text is the one from before");
+    state["faults"] = faults_json(faults);
     state["has_picture"] = bound_ != nullptr;
     state["is_capture_alone"] = bound_ && bound_->text == kNoSteps && texts_[at_] != kNoSteps;
     const bool is_bound = bound_ && bound_->revision == revision_;

@@ -63,8 +63,8 @@ public:
     void capture_changed();
 
     /// Takes over what another program wrote to the file, as one step of undo, faults and all. Nothing
-    /// happens where the text here is not saved, or the file cannot be read or is longer than a look may be.
-    /// Where the file is gone, the text counts as not saved.
+    /// happens where the text here is not saved. A file that cannot be read, or is longer than a look may be,
+    /// is a warning of the state. Where the file is gone, the text counts as not saved.
     void follow_file();
     /// {"revision", "effects_revision", "saved_revision", "path"}: whether a page has to read the state
     /// again.
@@ -127,7 +127,8 @@ private:
     std::vector<std::string> texts_;
     std::size_t at_ = 0;  // of texts_
     std::string saved_text_;
-    bool is_gone_ = false;  // another program removed the file
+    bool is_gone_ = false;    // another program removed the file
+    std::string file_fault_;  // why what another program wrote is not taken over
     std::uint64_t revision_ = 1;
     std::uint64_t saved_revision_ = 1;
     Diagnostics faults_;

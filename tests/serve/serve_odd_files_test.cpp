@@ -69,6 +69,25 @@ TEST_P(ServeOddFiles, HoldUpNoRequestAndNoEnd) {
     }
 }
 
+TEST_F(Serve, WarnsOfALookOnDiskThatIsTooLongUntilItIsShortAgain) {
+    start();
+    const std::string kept = read_text(folder_ / "look.json");
+    write_text(folder_ / "look.json", kept + std::string(2 << 20, ' '));
+    get("/api/changes");
+    const Json state = get("/api/state").json();
+    EXPECT_EQ(state["text"], kept);
+    ASSERT_EQ(state["faults"].size(), 1u) << state["faults"];
+    EXPECT_EQ(state["faults"][0]["severity"], "warning");
+    EXPECT_NE(state["faults"][0]["message"].get<std::string>().find("bytes, the limit is 1048576"),
+              std::string::npos)
+        << state["faults"];
+    EXPECT_EQ(get("/api/picture?frame=1").status, 200);
+    EXPECT_EQ(post("/api/save").status, 409) << "it would replace what is there";
+    write_text(folder_ / "look.json", kept);
+    get("/api/changes");
+    EXPECT_EQ(get("/api/state").json()["faults"], Json::array());
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, ServeOddFiles,
                          ::testing::Values("look.json", "other.json", "skin.json", "effects/mine/effect.json",
                                            "effects/mine/main.frag", "in_0001.exr"));
