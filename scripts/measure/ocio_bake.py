@@ -13,13 +13,17 @@ Function = Callable[[Array], Array]
 POINTS = 65
 LOG_POINTS = 8192
 # What a shaper holds: stops above 1 at its end, and the light that its logarithm adds, of which the better one is taken.
-TOP_STOPS, TOES = 8.0, (2e-3, 4e-3)
+TOP_STOPS, TOES = 8.0, (3e-3, 4e-3, 6e-3)
 # Share of the logarithm beside the view's own curve of greys, which alone would leave bright colours too few points.
 LOG_SHARE = 0.45
 # And beside a density of points by how the view bends, along lines of one channel's light through the others'.
-BEND_SHARES, BEND_POINTS, BEND_LINES = (0.3, 0.4), 257, 300
+BEND_SHARES, BEND_POINTS, BEND_LINES = (0.3, 0.4, 0.5), 257, 300
+# Colours that a cube is fitted to, the better shapers that it is tried with, and the steps towards the least squares.
+FIT_COLORS, FIT_SHAPERS, FIT_STEPS = 2_000_000, 5, 8
+# Of the curve in which cubes hold light for a display of usual brightness; sRGB's own is 0.055.
+STRAIGHT_PART = 0.035
 # Displays as OpenColorIO 2.1 has them, so that the program finds the encoding for PNG.
-DISPLAYS = ["sRGB", "REC.1886-REC.709", "G2.2-REC.709", "G2.6-P3-D65", "DisplayP3", "REC.2100-PQ", "ST2084-P3-D65",
+DISPLAYS = ["sRGB", "REC.1886-REC.709", "G2.2-REC.709", "G2.6-P3-D65", "REC.2100-PQ", "ST2084-P3-D65",
             "REC.2100-HLG-1000nit"]
 # Linear Rec. 709, by BabelColor's averages of the ColorChecker of 2012.
 PATCHES = [(.17, .08, .06), (.54, .30, .22), (.12, .19, .34), (.10, .15, .05), (.23, .22, .44), (.13, .50, .40), (.67, .20, .03),
@@ -66,8 +70,15 @@ def floor_transform() -> ocio.RangeTransform:
     return ocio.RangeTransform(minInValue=0.0, minOutValue=0.0)
 
 
-def is_clamp(transform: ocio.Transform) -> bool:
-    return isinstance(transform, ocio.RangeTransform) and transform.hasMaxOutValue() and transform.getMaxOutValue() == 1
+def is_simple(transform: ocio.Transform) -> bool:
+    return isinstance(transform, (ocio.MatrixTransform, ocio.RangeTransform, ocio.ExponentTransform, ocio.ExponentWithLinearTransform))
+
+
+def curve_of_displays(is_bright: bool, direction: ocio.TransformDirection) -> ocio.Transform:
+    """To light from the numbers that a cube holds. A straight part near black keeps what is below 0 near."""
+    if is_bright:
+        return ocio.BuiltinTransform(style="CURVE - ST-2084_to_LINEAR", direction=direction)
+    return ocio.ExponentWithLinearTransform(gamma=[2.4, 2.4, 2.4, 1], offset=[*[STRAIGHT_PART] * 3, 0], direction=direction)
 
 
 class Shaper:
@@ -75,9 +86,13 @@ class Shaper:
 
     def __init__(self, curve: Array, toe: float) -> None:
         self.curve, self.toe = curve, toe
+        side = numpy.linspace(0, 1, POINTS)
+        self.corners = self.light_at(numpy.stack(numpy.meshgrid(side, side, side, indexing="ij"), -1))
+
+    def light_at(self, places: Array) -> Array:
+        """The light that comes to these places in the cube, from 0 to 1 along each side."""
         shares = numpy.linspace(0, 1, LOG_POINTS)
-        axes = [light_from_log(numpy.interp(numpy.linspace(0, 1, POINTS), curve[:, c], shares), toe) for c in range(3)]
-        self.corners = numpy.stack(numpy.meshgrid(*axes, indexing="ij"), -1)
+        return numpy.stack([light_from_log(numpy.interp(places[..., c], self.curve[:, c], shares), self.toe) for c in range(3)], -1)
 
     def before_cube(self) -> list[ocio.Transform]:
         lut = ocio.Lut1DTransform(length=LOG_POINTS, inputHalfDomain=False)
@@ -110,6 +125,31 @@ def shaper_of_bends(view: Function, toe: float, share: float) -> Shaper:
     return Shaper(numpy.stack(curves, -1), toe)
 
 
+def fitted(cube: Array, shaper: Shaper, view: Function) -> Array:
+    """The cube whose tetrahedra are near the view in the mean of squares. Where a view bends, values at the corners alone leave all
+    that lies between them off to one side. A quarter of the colours is near grey."""
+    random = numpy.random.default_rng(3)
+    places = random.random((FIT_COLORS, 3))
+    greys = FIT_COLORS // 4
+    places[:greys] = numpy.clip(places[:greys, :1] + random.normal(0, 2 / POINTS, (greys, 3)), 0, 1)
+    exact = view(shaper.light_at(places))
+    cells = numpy.minimum((places * (POINTS - 1)).astype(int), POINTS - 2)
+    inside = places * (POINTS - 1) - cells
+    # A tetrahedron's corners: from the cell's first one along the channel that is furthest inside, then the next.
+    order = numpy.argsort(-inside, axis=1)
+    far = numpy.take_along_axis(inside, order, 1)
+    weights = numpy.stack([1 - far[:, 0], far[:, 0] - far[:, 1], far[:, 1] - far[:, 2], far[:, 2]], -1)
+    strides = numpy.array([POINTS * POINTS, POINTS, 1])
+    corners = (cells @ strides)[:, None] + numpy.pad(numpy.cumsum(strides[order], axis=1), ((0, 0), (1, 0)))
+    of_corners = numpy.maximum(numpy.bincount(corners.ravel(), weights.ravel(), POINTS ** 3), 1e-3)
+    values = cube.reshape(-1, 3).astype(float)
+    for _ in range(FIT_STEPS):
+        apart = exact - (weights[..., None] * values[corners]).sum(1)
+        for c in range(3):
+            values[:, c] += numpy.bincount(corners.ravel(), (weights * apart[:, c:c + 1]).ravel(), POINTS ** 3) / of_corners
+    return values
+
+
 class Baker:
     def __init__(self, path: str, folder: pathlib.Path) -> None:
         self.source = ocio.Config.CreateFromFile(path)
@@ -122,84 +162,107 @@ class Baker:
         for role, space in (("default", "ACES2065-1"), ("aces_interchange", "ACES2065-1"), ("cie_xyz_d65_interchange", "CIE XYZ-D65")):
             self.baked.setRole(role, space)
         self.ap0_from_709 = self.source.getProcessor("Linear Rec.709 (sRGB)", "ACES2065-1")
-        self.views = 0
+        self.luts = 0
 
     def view(self, display: str, view: str) -> ocio.Processor:
         return self.source.getProcessor(ocio.DisplayViewTransform(src="ACES2065-1", display=display, view=view))
 
-    def style_of(self, display: str) -> str:
-        """The transform of OpenColorIO 2.1 that makes the display's numbers of CIE XYZ; "" where it has none."""
+    def space_of(self, display: str, view: str) -> str:
+        return self.source.getDisplayViewColorSpaceName(display, view).replace("<USE_DISPLAY_NAME>", display)
+
+    def encoding_of(self, space: str) -> ocio.Transform | None:
+        """What OpenColorIO 2.1 has for the display's numbers of CIE XYZ: a transform by name, or matrices and exponents."""
         greys = numpy.linspace(0.02, 1, 50)[:, None] * numpy.array([[1, 1, 1], [1, .6, .5], [.5, 1, .6], [.5, .6, 1]])[:, None]
-        space = self.source.getDisplayViewColorSpaceName(display, self.source.getDefaultView(display))
-        space = display if space == "<USE_DISPLAY_NAME>" else space
         for name in DISPLAYS:
             style = f"DISPLAY - CIE-XYZ-D65_to_{name}"
             back = self.source.getProcessor(ocio.BuiltinTransform(style=style), ocio.TRANSFORM_DIR_INVERSE)
             expected = applied(self.source.getProcessor(space, "cie_xyz_d65_interchange"), greys)
             if numpy.allclose(applied(back, greys), expected, rtol=1e-3, atol=1e-4):
-                return style
-        return ""
+                return ocio.BuiltinTransform(style=style)
+        steps = self.source.getProcessor("cie_xyz_d65_interchange", space).createGroupTransform()
+        return steps if all(is_simple(step) for step in steps) else None
 
-    def shaped_view(self, view: ocio.Processor, to_p3: ocio.MatrixTransform) -> ocio.GroupTransform:
-        """From ACES2065-1 to the display's numbers, by a shaper and a cube, whose files it writes: of several shapers the one with
-        the least error."""
-        # A cube is better for what the view makes before it clamps: a clamp is a bend of its own, and exact behind the cube.
-        steps = list(view.createGroupTransform())
-        clamp = [step for step in steps if is_clamp(step)]
-        smooth = self.source.getProcessor(ocio.GroupTransform([step for step in steps if not is_clamp(step)]))
+    def baked_steps(self, whole: ocio.Processor) -> ocio.GroupTransform:
+        """From ACES2065-1: a shaper and a cube, whose files it writes, up to the last step that OpenColorIO 2.1 lacks; then the
+        steps after it. So a clamp, which is a bend of its own, is exact behind the cube."""
+        steps = list(whole.createGroupTransform())
+        end = next((at for at in range(len(steps), 0, -1) if not is_simple(steps[at - 1])), 0)
+        if end == 0:
+            return ocio.GroupTransform(steps)
+        matrix = numpy.eye(4)
+        matrix[:3, :3] = applied(self.source.getProcessor("ACES2065-1", "Linear P3-D65"), numpy.eye(3)).T
+        to_p3 = ocio.MatrixTransform(matrix=matrix.reshape(-1).tolist())
+        head = self.source.getProcessor(ocio.GroupTransform(steps[:end]))
+        # The cube holds numbers as an eye counts them: light that steps follow by a curve for displays of its range.
+        is_bright = applied(head, numpy.array([[2.0 ** TOP_STOPS] * 3])).max() > 1.05
+        curve = [] if end == len(steps) else [curve_of_displays(is_bright, ocio.TRANSFORM_DIR_INVERSE)]
+        curved = self.source.getProcessor(ocio.GroupTransform([*steps[:end], *curve]))
         from_p3 = self.source.getProcessor(to_p3, ocio.TRANSFORM_DIR_INVERSE)
+        shaper, cube = self.best_cube(to_p3, lambda light: applied(curved, applied(from_p3, light)))
+        shaper_name, cube_name = self.write_luts(shaper, cube)
+        back = [curve_of_displays(is_bright, ocio.TRANSFORM_DIR_FORWARD)] if curve else []
+        return ocio.GroupTransform([to_p3, floor_transform(), log_transform(shaper.toe),
+                                    ocio.FileTransform(src=shaper_name, interpolation=ocio.INTERP_LINEAR),
+                                    ocio.FileTransform(src=cube_name, interpolation=ocio.INTERP_TETRAHEDRAL), *back, *steps[end:]])
 
-        def of_p3(light: Array) -> Array:
-            return applied(smooth, applied(from_p3, light))
-
+    def best_cube(self, to_p3: ocio.MatrixTransform, of_p3: Function) -> tuple[Shaper, Array]:
+        """Of several shapers the one with the least error over the chart."""
         colors = applied(self.ap0_from_709, test_colors())
-        exact = numpy.clip(applied(view, colors), 0, 1)
-        best: tuple[float, Shaper, Array] | None = None
-        for shaper in [*(shaper_of_greys(of_p3, toe) for toe in TOES),
-                       *(shaper_of_bends(of_p3, toe, share) for toe in TOES for share in BEND_SHARES)]:
-            cube = of_p3(shaper.corners)
-            cube[numpy.abs(cube) < 1e-30] = 0  # the reader of .spi3d takes no denormal number
+        exact = numpy.clip(of_p3(applied(self.source.getProcessor(to_p3), colors)), 0, 1)
+
+        def error_of(shaper: Shaper, cube: Array) -> float:
             lut = ocio.Lut3DTransform(gridSize=POINTS)
             lut.setData(cube.astype(numpy.float32).ravel())
             lut.setInterpolation(ocio.INTERP_TETRAHEDRAL)
             whole = self.source.getProcessor(ocio.GroupTransform([to_p3, *shaper.before_cube(), lut]))
             apart = numpy.abs(numpy.clip(applied(whole, colors), 0, 1) - exact)
-            error = float(numpy.nan_to_num(apart, nan=numpy.inf).max())
-            if best is None or error < best[0]:
-                best = error, shaper, cube
-        assert best is not None
-        _, shaper, cube = best
-        self.views += 1
-        shaper_name, cube_name = f"shaper_{self.views}.spi1d", f"view_{self.views}.spi3d"
+            return float(numpy.nan_to_num(apart, nan=numpy.inf).max())
+
+        shapers = [*(shaper_of_greys(of_p3, toe) for toe in TOES),
+                   *(shaper_of_bends(of_p3, toe, share) for toe in TOES for share in BEND_SHARES)]
+        tried = []
+        for shaper in shapers:
+            cube = of_p3(shaper.corners)
+            tried.append((error_of(shaper, cube), shaper, cube))
+        tried.sort(key=lambda found: found[0])
+        for _, shaper, cube in tried[:FIT_SHAPERS]:
+            better = fitted(cube, shaper, of_p3)
+            tried.append((error_of(shaper, better), shaper, better))
+        _, shaper, cube = min(tried, key=lambda found: found[0])
+        return shaper, cube
+
+    def write_luts(self, shaper: Shaper, cube: Array) -> tuple[str, str]:
+        self.luts += 1
+        shaper_name, cube_name = f"shaper_{self.luts}.spi1d", f"view_{self.luts}.spi3d"
         lines = "\n".join(" ".join(f"{value:.8g}" for value in row) for row in shaper.curve)
         (self.folder / "luts" / shaper_name).write_text(
             f"Version 1\nFrom 0 1\nLength {LOG_POINTS}\nComponents 3\n{{\n{lines}\n}}\n")
-        # OpenColorIO's cubes run through blue first.
+        # OpenColorIO's cubes run through blue first; its reader takes no denormal number.
         index = numpy.stack(numpy.meshgrid(*[numpy.arange(POINTS)] * 3, indexing="ij"), -1).reshape(-1, 3)
-        rows = "\n".join(f"{r} {g} {b} {x:.7g} {y:.7g} {z:.7g}" for (r, g, b), (x, y, z) in zip(index, cube, strict=True))
+        values = numpy.where(numpy.abs(cube) < 1e-30, 0, cube)
+        rows = "\n".join(f"{r} {g} {b} {x:.7g} {y:.7g} {z:.7g}" for (r, g, b), (x, y, z) in zip(index, values, strict=True))
         (self.folder / "luts" / cube_name).write_text(f"SPILUT 1.0\n3 3\n{POINTS} {POINTS} {POINTS}\n{rows}\n")
-        return ocio.GroupTransform([to_p3, floor_transform(), log_transform(shaper.toe),
-                                    ocio.FileTransform(src=shaper_name, interpolation=ocio.INTERP_LINEAR),
-                                    ocio.FileTransform(src=cube_name, interpolation=ocio.INTERP_TETRAHEDRAL), *clamp[-1:]])
+        return shaper_name, cube_name
 
     def add(self, display: str, view: str) -> None:
-        processor = self.view(display, view)
-        matrix = applied(self.source.getProcessor("ACES2065-1", "Linear P3-D65"), numpy.eye(3)).T
-        rows = numpy.eye(4)
-        rows[:3, :3] = matrix
-        whole = self.shaped_view(processor, ocio.MatrixTransform(matrix=rows.reshape(-1).tolist()))
-        style = self.style_of(display)
-        if style:
-            whole.appendTransform(ocio.BuiltinTransform(style=style, direction=ocio.TRANSFORM_DIR_INVERSE))
-            self.baked.addViewTransform(ocio.ViewTransform(
-                referenceSpace=ocio.REFERENCE_SPACE_SCENE, name=f"{display}, {view}", fromReference=whole))
-            if display not in self.baked.getColorSpaceNames(ocio.SEARCH_REFERENCE_SPACE_DISPLAY, ocio.COLORSPACE_ALL):
-                self.baked.addColorSpace(ocio.ColorSpace(
-                    ocio.REFERENCE_SPACE_DISPLAY, display, fromReference=ocio.BuiltinTransform(style=style)))
-            self.baked.addDisplayView(display, view, f"{display}, {view}", display, "", "", "")
-        else:
+        transform, space = self.source.getDisplayViewTransformName(display, view), self.space_of(display, view)
+        encoding = self.encoding_of(space) if transform else None
+        if not encoding:
+            whole = self.baked_steps(self.view(display, view))
             self.baked.addColorSpace(ocio.ColorSpace(name=f"{display}, {view}", fromReference=whole))
             self.baked.addDisplayView(display, view, f"{display}, {view}")
+            return
+        if transform not in self.baked.getViewTransformNames():
+            own = self.source.getViewTransform(transform)
+            steps = [own.getTransform(ocio.VIEWTRANSFORM_DIR_FROM_REFERENCE)]
+            if own.getReferenceSpaceType() == ocio.REFERENCE_SPACE_DISPLAY:
+                steps.insert(0, ocio.ColorSpaceTransform("ACES2065-1", "cie_xyz_d65_interchange"))
+            to_xyz = self.source.getProcessor(ocio.GroupTransform(steps))
+            self.baked.addViewTransform(ocio.ViewTransform(
+                referenceSpace=ocio.REFERENCE_SPACE_SCENE, name=transform, fromReference=self.baked_steps(to_xyz)))
+        if space not in self.baked.getColorSpaceNames(ocio.SEARCH_REFERENCE_SPACE_DISPLAY, ocio.COLORSPACE_ALL):
+            self.baked.addColorSpace(ocio.ColorSpace(ocio.REFERENCE_SPACE_DISPLAY, space, fromReference=encoding))
+        self.baked.addDisplayView(display, view, transform, space, "", "", "")
 
     def write(self) -> pathlib.Path:
         path = self.folder / "config.ocio"
@@ -227,7 +290,7 @@ def main(words: Sequence[str]) -> None:
     chosen = [(display, view) for display in baker.source.getDisplays() for view in baker.source.getViews(display)
               if options.display in (None, display) and options.view in (None, view)]
     chosen = [(display, view) for display, view in chosen if not baker.source.getColorSpace(
-        baker.source.getDisplayViewColorSpaceName(display, view).replace("<USE_DISPLAY_NAME>", display)).isData()]
+        baker.space_of(display, view)).isData()]
     if not chosen:
         sys.exit(f"{options.config} has no such display and view; its displays: {', '.join(baker.source.getDisplays())}")
     for display, view in chosen:
