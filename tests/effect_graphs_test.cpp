@@ -78,9 +78,9 @@ std::optional<std::pair<ParamValue, ParamValue>> other_contents(const ParamSpec&
     if (const auto* flag = std::get_if<bool>(&usual)) return std::pair<ParamValue, ParamValue>(*flag, !*flag);
     if (const auto* integer = std::get_if<std::int64_t>(&usual))
         return std::pair<ParamValue, ParamValue>(*integer, std::int64_t(nudged(double(*integer))));
-    // From 0 to another number passes may come and go ("nonzero.").
+    // From 0 or its identity to another number passes may come and go ("nonzero.", "changes.").
     if (const auto* number = std::get_if<double>(&usual)) {
-        const double first = *number == 0 ? nudged(0) : *number;
+        const double first = *number == 0 || spec.identity == usual ? nudged(*number) : *number;
         return std::pair<ParamValue, ParamValue>(first, nudged(first));
     }
     if (const auto* components = std::get_if<std::vector<double>>(&usual)) {

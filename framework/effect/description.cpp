@@ -83,6 +83,9 @@ std::string conditions_text(const std::vector<WhenSpec>& conditions) {
             what = (values == "true" ? "the input " : "no input ") + name_in_condition(condition.subject);
         if (condition.subject.starts_with(kNonzero) && condition.values.size() == 1)
             what = name_in_condition(condition.subject) + (values == "true" ? " not 0" : " 0");
+        if (condition.subject.starts_with(kChanges) && condition.values.size() == 1)
+            what = name_in_condition(condition.subject) + (values == "true" ? " not " : " ") +
+                   format_value(*condition.identity);
         text += (text.empty() ? "" : ", ") + what;
     }
     return text;

@@ -21,6 +21,7 @@ ParamValue aspect_of(const ParamSpec& spec, const ParamValue& value, ParamAspect
         }
         case ParamAspect::defines: return spec.type->defines(spec, value);
         case ParamAspect::is_nonzero: return is_another_than_0(value);
+        case ParamAspect::is_changed: return value != spec.identity;
     }
     return value;
 }
@@ -46,6 +47,10 @@ std::string ParamReader::defines(const ParamSpec& spec) const {
 
 bool ParamReader::is_nonzero(const std::string& name) const {
     return std::get<bool>(noted(name, ParamAspect::is_nonzero, is_another_than_0(params_->get(name))));
+}
+
+bool ParamReader::is_changed(const std::string& name, const ParamValue& identity) const {
+    return std::get<bool>(noted(name, ParamAspect::is_changed, params_->get(name) != identity));
 }
 
 ParamValue ParamReader::ask(const ParamSpec& spec, ParamAspect aspect) const {

@@ -18,7 +18,8 @@ enum class ParamAspect {
     table_entries,  ///< int: entries of its table
     texture_size,   ///< vector: width, height and channels of its texture
     defines,        ///< string: its preprocessor lines
-    is_nonzero      ///< bool: of one number, whether it is another than 0
+    is_nonzero,     ///< bool: of one number, whether it is another than 0
+    is_changed      ///< bool: whether it is another than the parameter's `identity`
 };
 
 /// The answer, of the type that the aspect says. The parameter's type must have that.
@@ -47,6 +48,8 @@ public:
     std::string defines(const ParamSpec& spec) const;
     /// Whether one number is not 0.
     bool is_nonzero(const std::string& name) const;
+    /// Whether the value is another than this one, which is the parameter's `identity`.
+    bool is_changed(const std::string& name, const ParamValue& identity) const;
 
 private:
     ParamValue ask(const ParamSpec& spec, ParamAspect aspect) const;

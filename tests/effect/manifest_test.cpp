@@ -101,8 +101,8 @@ const std::vector<Broken> kBrokenSections = {
      R"("inputs": {"color": {"role": "color", "when": {"mode": "god"}}, "depth": {"role": "depth",
         "optional": true, "when": {"has.depth": true, "mde": "fast"}}})",
      {"2: an input with 'when' must be 'optional'", "2: \"god\" is not a value of 'mode'",
-      "2: only passes test whether an input is present or a number is not 0; the conditions of an input are "
-      "on values of parameters",
+      "2: only passes test whether an input is present, a number is not 0 or a parameter changes the image; "
+      "the conditions of an input are on values of parameters",
       "2: the condition 'mde' is not a parameter; did you mean 'mode'?"}},
     {test::kInputs,
      R"("inputs": {"color": {"role": "color", "instead": "depth"}, "depth": {"role": "depth", "optional": true,

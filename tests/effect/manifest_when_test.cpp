@@ -55,14 +55,16 @@ TEST(Conditions, DecideWhichReadsAndWritesAreThere) {
     EXPECT_EQ(reads(last), (std::vector<std::string>{}));
 }
 
+/// A manifest whose first pass has these conditions.
+test::Sections with(const std::string& conditions) {
+    return {
+        {test::kTextures, R"("textures": {"small": {"format": "rgba16f", "doc": "."}})"},
+        {test::kPasses,
+         R"("passes": [{"name": "make", "shader": "a.frag", "writes": ["small"], "when": )" + conditions +
+             R"(}, {"name": "last", "shader": "b.frag", "reads": ["color", "depth"], "writes": ["color", "small"]}])"}};
+}
+
 TEST(Conditions, MayAskWhetherANumberIs0) {
-    const auto with = [](const std::string& conditions) {
-        return test::Sections{
-            {test::kTextures, R"("textures": {"small": {"format": "rgba16f", "doc": "."}})"},
-            {test::kPasses,
-             R"("passes": [{"name": "make", "shader": "a.frag", "writes": ["small"], "when": )" + conditions +
-                 R"(}, {"name": "last", "shader": "b.frag", "reads": ["color", "depth"], "writes": ["color", "small"]}])"}};
-    };
     const EffectFolder folder(demo_manifest(with(R"({"nonzero.gain": true, "nonzero.taps": [true]})")));
     Assembly make(folder, 0);
     const auto runs = [&](double gain, std::int64_t taps) {
@@ -82,6 +84,33 @@ TEST(Conditions, MayAskWhetherANumberIs0) {
                         {"6: pass 'make': the condition 'nonzero.mode' is not on a number"});
     test::expect_faults(with(R"({"nonzero.gain": 1})"),
                         {"6: whether a number is not 0 compares with true or false"});
+}
+
+TEST(Conditions, MayAskWhetherAParameterIsAtItsIdentity) {
+    test::Sections sections = with(R"({"changes.gamma": [true], "changes.tint": false})");
+    sections[test::kParams] = R"("params": {
+        "gamma": {"type": "float", "default": 1, "min": 0.1, "identity": 1, "doc": "."},
+        "tint": {"type": "color", "default": [1, 0, 0], "identity": [1, 1, 1], "doc": "."}})";
+    sections[test::kPresets] = R"("presets": {})";
+    const EffectFolder folder(demo_manifest(sections));
+    Assembly make(folder, 0);
+    const auto runs = [&](double gamma, std::vector<double> tint) {
+        make.params.set("gamma", gamma);
+        make.params.set("tint", std::move(tint));
+        return pass_enabled(make.manifest.passes[0], make.params, {});
+    };
+    EXPECT_TRUE(runs(2.2, {1, 1, 1}));
+    EXPECT_TRUE(runs(0.1, {1, 1, 1}));
+    EXPECT_FALSE(runs(1, {1, 1, 1}));
+    EXPECT_FALSE(runs(2.2, {1, 1, 0.5}));
+    test::expect_faults(
+        with(R"({"changes.gain": true})"),
+        {"6: pass 'make': the condition 'changes.gain' is on a parameter without an 'identity'"});
+    test::expect_faults(
+        with(R"({"changes.gian": true})"),
+        {"6: pass 'make': the condition 'changes.gian' is not a parameter; did you mean 'gain'?"});
+    sections[test::kPasses] = with(R"({"changes.gamma": 1, "changes.tint": true})")[test::kPasses];
+    test::expect_faults(sections, {"6: whether a parameter changes the image compares with true or false"});
 }
 
 TEST(Conditions, LeaveAPassOutThatWouldWriteNothing) {

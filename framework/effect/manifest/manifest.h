@@ -17,12 +17,13 @@
 
 namespace aftershade {
 
-/// A condition on one parameter ("shape"), on whether a number is not 0 ("nonzero.gain") or on an optional
-/// input
-/// ("has.velocity"): any of these values.
+/// A condition on one parameter ("shape"), on whether a number is not 0 ("nonzero.gain"), on whether a
+/// parameter is not at its identity ("changes.gamma") or on an optional input ("has.velocity"): any of these
+/// values.
 struct WhenSpec {
     std::string subject;
     std::vector<ParamValue> values;
+    std::optional<ParamValue> identity;  ///< of the parameter, where it has one
     Place place;
 };
 

@@ -37,6 +37,11 @@ Form condition_on_number() {
     return one_or_more(grammar::boolean(), "whether a number is not 0 compares with true or false");
 }
 
+Form condition_on_change() {
+    return one_or_more(grammar::boolean(),
+                       "whether a parameter changes the image compares with true or false");
+}
+
 Form condition_on_param() {
     constexpr const char* kFault = "a condition compares with true, false, an integer or a name";
     const Form value = grammar::by_kind({grammar::boolean(), grammar::integer(), text()}, kFault);
@@ -51,8 +56,12 @@ grammar::Pattern on_number() {
     return {R"(^nonzero\.)", [](const std::string& name) { return name.starts_with(kNonzero); }};
 }
 
+grammar::Pattern on_change() {
+    return {R"(^changes\.)", [](const std::string& name) { return name.starts_with(kChanges); }};
+}
+
 grammar::Pattern on_param() {
-    return {R"(^(?!has\.|nonzero\.))",
+    return {R"(^(?!has\.|nonzero\.|changes\.))",
             [](const std::string& name) { return name_in_condition(name) == name; }};
 }
 
@@ -60,6 +69,7 @@ Block conditions_block() {
     return {.name = "",
             .others = {{on_input(), condition_on_input()},
                        {on_number(), condition_on_number()},
+                       {on_change(), condition_on_change()},
                        {on_param(), condition_on_param()}},
             .type = "[conditions](#conditions)"};
 }
@@ -68,8 +78,8 @@ Block conditions_of_input_block() {
     return {.name = "",
             .others = {{on_param(), condition_on_param()}},
             .unknown_key =
-                "only passes test whether an input is present or a number is not 0; the conditions of an "
-                "input are on values of parameters",
+                "only passes test whether an input is present, a number is not 0 or a parameter changes the "
+                "image; the conditions of an input are on values of parameters",
             .type = "[conditions](#conditions) on parameters"};
 }
 

@@ -9,6 +9,7 @@
 #include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/effect/manifest/manifest_groups.h"
 #include "framework/effect/manifest/manifest_parser.h"
+#include "framework/effect/manifest/manifest_when.h"
 #include "framework/effect/param_types.h"
 
 namespace aftershade {
@@ -140,6 +141,7 @@ std::optional<EffectManifest> parse_manifest(const Node& written, const fs::path
     if (parser.has_all_modules()) {
         parser.telemetry(document);
         parser.presets(document);
+        note_identities(manifest);
         if (write_out(manifest, glsl_folder, diagnostics)) check_manifest(manifest, diagnostics);
     }
     if (diagnostics.error_count() > errors_before) return std::nullopt;

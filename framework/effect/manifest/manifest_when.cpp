@@ -21,7 +21,7 @@ bool may_equal(const ParamSpec& spec, const ParamValue& value) {
 }  // namespace
 
 std::string name_in_condition(const std::string& subject) {
-    for (const std::string_view prefix : {kHasInput, kNonzero})
+    for (const std::string_view prefix : {kHasInput, kNonzero, kChanges})
         if (subject.starts_with(prefix)) return subject.substr(prefix.size());
     return subject;
 }
@@ -45,6 +45,21 @@ void add_conditions(const grammar::Reader& owner, std::vector<WhenSpec>& conditi
     }
 }
 
+void note_identities(EffectManifest& manifest) {
+    const auto note = [&](std::vector<WhenSpec>& conditions) {
+        for (WhenSpec& condition : conditions)
+            if (const ParamSpec* spec = manifest.find_param(name_in_condition(condition.subject)))
+                condition.identity = spec->identity;
+    };
+    for (TextureSpec& texture : manifest.textures) note(texture.when);
+    for (TileListSpec& list : manifest.tiles) note(list.when);
+    for (PassSpec& pass : manifest.passes) {
+        note(pass.when);
+        for (ReadSpec& read : pass.reads) note(read.when);
+        for (WriteSpec& write : pass.writes) note(write.when);
+    }
+}
+
 std::vector<std::string> faults_of_condition(const EffectManifest& manifest, const WhenSpec& condition) {
     const std::string subject = "'" + condition.subject + "'", name = name_in_condition(condition.subject);
     if (condition.subject.starts_with(kHasInput)) {
@@ -59,6 +74,10 @@ std::vector<std::string> faults_of_condition(const EffectManifest& manifest, con
     if (condition.subject.starts_with(kNonzero)) {
         if (spec->type->is_scalar) return {};
         return {"the condition " + subject + " is not on a number"};
+    }
+    if (condition.subject.starts_with(kChanges)) {
+        if (spec->identity) return {};
+        return {"the condition " + subject + " is on a parameter without an 'identity'"};
     }
     std::vector<std::string> faults;
     for (const ParamValue& value : condition.values)
@@ -75,6 +94,8 @@ bool conditions_hold(const std::vector<WhenSpec>& conditions, const ParamReader&
         if (condition.subject.starts_with(kHasInput))
             actual = std::find(present_inputs.begin(), present_inputs.end(), name) != present_inputs.end();
         else if (condition.subject.starts_with(kNonzero)) actual = params.is_nonzero(name);
+        else if (condition.subject.starts_with(kChanges))
+            actual = params.is_changed(name, *condition.identity);
         else actual = params.get(name);
         return std::find(condition.values.begin(), condition.values.end(), actual) != condition.values.end();
     };
