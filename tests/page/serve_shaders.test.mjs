@@ -115,6 +115,22 @@ withTint(
   },
 );
 
+withTint("undoes a drag at once, also where an effect's file changed after it", async (page, { shader, text }) => {
+  const before = await textOf(page);
+  for (const value of [0.1, 0.2, 0.5, 0.4])
+    await page.evaluate(
+      ([step, value]) => window.aftershade.store.edit([{ op: "set", step, param: "exposure", value }], "drag"),
+      [JSON.parse(text.replace(/\/\/.*$/gm, "")).steps.findIndex(({ effect }) => effect === "color_grade"), value],
+    );
+  assert.notEqual(await textOf(page), before);
+  await page.evaluate(() => window.aftershade.store.followFiles());
+  const revision = (await state(page)).effects_revision;
+  writeFileSync(shader, tintShader("light * 0.5 * param.amount"));
+  await page.waitForFunction((old) => window.aftershade.store.state.effects_revision > old, revision);
+  await page.evaluate(() => window.aftershade.store.undo());
+  assert.equal(await textOf(page), before);
+});
+
 withTint(
   "writes a shader by Ctrl+S and shows the picture that `run` then draws",
   async (page, { shader, files, look }) => {

@@ -1,9 +1,11 @@
 // Frames that the page has written: images and videos, whole or not at all.
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
@@ -119,6 +121,23 @@ TEST_F(ServeExportWithGaps, LeavesOutNumbersWithoutAFrameAsThePageDoes) {
     EXPECT_TRUE(fs::exists(folder_ / "shot/shot_0004.png"));
     EXPECT_FALSE(fs::exists(folder_ / "shot/shot_0003.png"));
     EXPECT_TRUE(get("/api/command").json()["command"].get<std::string>().ends_with(" --missing skip"));
+}
+
+TEST_F(ServeExport, GivesEveryStillBesideThePicturesOfAViewer) {
+    start();
+    const std::string still = get("/api/picture?frame=1&format=png").body;
+    std::atomic<bool> ends = false;
+    std::vector<std::jthread> viewers;
+    for (int i = 0; i < 2; ++i)
+        viewers.emplace_back([&] {
+            while (!ends) get("/api/picture?frame=1");
+        });
+    for (int i = 0; i < 30; ++i) {
+        const Answer answer = get("/api/picture?frame=1&format=png");
+        EXPECT_EQ(answer.status, 200) << answer.body;
+        EXPECT_TRUE(answer.body == still) << i;
+    }
+    ends = true;
 }
 
 TEST_F(ServeExport, GivesTheStillAsTheFileThatItWrites) {
