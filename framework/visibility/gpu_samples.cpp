@@ -41,7 +41,7 @@ std::vector<GpuCorners> corners_of(const scene::Scene& scene, const GpuScene& tr
             own.normals[std::size_t(i)] = with(vertex.normal, vertex.uv.x);
             own.v_material[i] = float(vertex.uv.y);
         }
-        own.v_material.w = std::bit_cast<float>(std::uint32_t(of.material));
+        own.v_material.w = std::bit_cast<float>(std::uint32_t(scene.material_at(int(object), triangle)));
     }
     return corners;
 }
@@ -58,16 +58,19 @@ std::vector<GpuLight> lights_at(const std::vector<scene::World>& moments) {
 class LightSamplesGraph {
 public:
     LightSamplesGraph(Passes& passes, const scene::Scene& scene, const GpuScene& triangles,
-                      const SampleSettings& settings, std::size_t pixels)
+                      const SampleSettings& settings, std::size_t pixels, std::size_t max_buffer_bytes)
         : passes_(passes),
           settings_(settings),
           scene_path_(scene.path.string()),
-          materials_(gpu_materials(scene)),
+          materials_(gpu_materials(scene, max_buffer_bytes)),
           corners_(corners_of(scene, triangles)),
+          tangents_(gpu_tangents(scene, triangles.sources)),
           executor_(executor_of(passes, make_graph(triangles, pixels))) {
         set(executor_, nodes_in_, triangles.nodes);
         set(executor_, triangles_in_, triangles.triangles);
-        set(executor_, materials_in_, materials_);
+        set(executor_, materials_in_, materials_.materials);
+        set(executor_, textures_in_, materials_.textures);
+        set(executor_, tangents_in_, tangents_);
         set(executor_, corners_in_, corners_);
     }
 
@@ -92,7 +95,9 @@ private:
         triangles_in_ = graph.import_buffer("triangles", room_for(triangles.triangles));
         moments_in_ = graph.import_buffer("moments", {kMoments * settings_.object_count * 3 * sizeof(vec4)});
         rays_in_ = graph.import_buffer("rays", {pixels * sizeof(GpuRay)});
-        materials_in_ = graph.import_buffer("materials", room_for(materials_));
+        materials_in_ = graph.import_buffer("materials", room_for(materials_.materials));
+        textures_in_ = graph.import_buffer("textures", room_for(materials_.textures));
+        tangents_in_ = graph.import_buffer("tangents", room_for(tangents_));
         lights_in_ = graph.import_buffer("lights",
                                          {kMoments * std::max(settings_.light_count, 1u) * sizeof(GpuLight)});
         corners_in_ = graph.import_buffer("corners", room_for(corners_));
@@ -102,6 +107,8 @@ private:
         const graph::BufferHandle read[] = {nodes_in_,     triangles_in_, moments_in_, rays_in_,
                                             materials_in_, lights_in_,    corners_in_};
         for (int i = 0; i < int(std::size(read)); ++i) pass.buffers.push_back({read[i], i, Access::read});
+        pass.buffers.push_back({textures_in_, 8, Access::read});
+        pass.buffers.push_back({tangents_in_, 10, Access::read});
         // It also reads what its run for the sample before has left there, which is not of this frame.
         pass.buffers.push_back({graph.create_buffer("sums", {pixels * sizeof(vec4)}), 7, Access::write});
         const std::size_t sums = pass.buffers.size() - 1;
@@ -115,10 +122,11 @@ private:
     Passes& passes_;
     SampleSettings settings_;
     std::string scene_path_;
-    std::vector<GpuMaterial> materials_;
+    GpuMaterials materials_;
     std::vector<GpuCorners> corners_;
+    std::vector<vec4> tangents_;
     graph::BufferHandle nodes_in_, triangles_in_, moments_in_, rays_in_, materials_in_, lights_in_,
-        corners_in_, sums_, unfinished_;
+        corners_in_, textures_in_, tangents_in_, sums_, unfinished_;
     graph::Executor executor_;  // made of all the above
 };
 
@@ -135,7 +143,8 @@ scene::LitSamples light_samples(Passes& passes, const scene::SceneRenderer& rend
     const SampleSettings values =
         sample_settings(renderer, triangles, grids.reference().camera, settings.samples);
     const Bands bands(renderer.width_px(), renderer.height_px(), width * sizeof(GpuRay), 1, max_buffer_bytes);
-    LightSamplesGraph graph(passes, renderer.scene(), triangles, values, width * std::size_t(bands.rows));
+    LightSamplesGraph graph(passes, renderer.scene(), triangles, values, width * std::size_t(bands.rows),
+                            max_buffer_bytes);
     scene::LitSamples lit(renderer.width_px(), renderer.height_px());
     bands.for_each([&](int first, int rows) {
         for (int sample = 0; sample < settings.samples; ++sample) {

@@ -33,6 +33,8 @@ layout(std140, binding = 0) uniform Settings {
     uint unused_1, unused_2;
     vec4 ambient;  // w: rays that seek what hides it
     vec4 background;
+    vec4 camera_right;  // the reference pose's axes
+    vec4 camera_up;
 };
 
 const uint kNoShading = 0xffffffffu;

@@ -33,6 +33,8 @@ SampleSettings sample_settings(const scene::SceneRenderer& renderer, const GpuSc
     settings.light_count = std::uint32_t(of.lights.size());
     settings.ambient = with(of.ambient, double(of.ambient_rays));
     settings.background = with(of.background);
+    settings.camera_right = with(glm::dvec3(reference.world_from_camera[0]));
+    settings.camera_up = with(glm::dvec3(reference.world_from_camera[1]));
     return settings;
 }
 

@@ -30,6 +30,8 @@ struct SampleSettings {
     std::uint32_t unused[2] = {};
     glm::vec4 ambient{0};
     glm::vec4 background{0};
+    glm::vec4 camera_right{0};
+    glm::vec4 camera_up{0};
 };
 
 /// All but the pixels and the number of the sample.
