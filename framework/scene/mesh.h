@@ -25,6 +25,9 @@ struct Bounds {
     }
 };
 
+/// Around the corners of a box elsewhere.
+Bounds transformed(const Bounds& bounds, const glm::dmat4& matrix);
+
 struct Vertex {
     glm::dvec3 position{0};  ///< object space, m
     glm::dvec3 normal{0};    ///< unit length

@@ -115,6 +115,7 @@ public:
     World world_at(int frame, double time, double samples_of_px = 1) const;
 
     const Scene& scene() const { return scene_; }
+    const Geometry& geometry() const { return geometry_; }
     int width_px() const { return width_px_; }
     int height_px() const { return height_px_; }
     int threads() const { return threads_; }

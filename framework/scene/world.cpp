@@ -17,15 +17,6 @@ dvec3 point(const dmat4& matrix, const dvec3& p) {
     return dvec3(matrix * dvec4(p, 1));
 }
 
-Bounds transformed(const Bounds& bounds, const dmat4& matrix) {
-    Bounds result;
-    for (int corner = 0; corner < 8; ++corner)
-        result.add(point(
-            matrix, {corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
-                     corner & 4 ? bounds.high.z : bounds.low.z}));
-    return result;
-}
-
 /// Both normals on the side that the ray came from.
 void face(Surface& surface, bool from_behind) {
     surface.from_behind = from_behind;

@@ -20,6 +20,7 @@ public:
     /// `scene` must outlive this.
     explicit Geometry(const Scene& scene);
     const Scene& scene() const { return scene_; }
+    const MeshTree& mesh(std::size_t index) const { return meshes_[index]; }
     const MeshTree* mesh_of(const Shape& shape) const {
         return shape.mesh >= 0 ? &meshes_[std::size_t(shape.mesh)] : nullptr;
     }

@@ -105,7 +105,7 @@ std::vector<GpuLight> gpu_lights(const scene::Scene& scene, const scene::SceneSt
 LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
                             std::size_t max_bytes) {
     const scene::Scene& scene = renderer.scene();
-    check_triangle_count(scene, grids);
+    check_triangle_count(scene);
     LightScene result;
     std::vector<GpuBlocker> blockers;
     std::vector<scene::Bounds> bounds;
@@ -115,11 +115,7 @@ LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::S
     result.nodes = gpu_nodes(bvh);
     for (const std::uint32_t item : bvh.items) result.blockers.push_back(blockers[item]);
     result.materials = gpu_materials(scene, max_bytes);
-    std::vector<std::array<std::uint32_t, 2>> sources;
-    for (std::uint32_t object = 0; object < scene.objects.size(); ++object)
-        if (const int mesh = scene.objects[object].shape.mesh; mesh >= 0)
-            for (std::uint32_t i = 0; i < scene.meshes[std::size_t(mesh)].triangles.size(); ++i)
-                sources.push_back({object, i});
+    const std::vector<std::array<std::uint32_t, 2>> sources = gpu_sources(scene);
     result.tangents = gpu_tangents(scene, sources);
     for (std::size_t i = 0; i < result.tangents.size(); ++i) {
         vec4& tangent = result.tangents[i];
