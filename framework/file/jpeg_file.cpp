@@ -35,6 +35,12 @@ Image read_jpeg(const fs::path& path) {
     std::string fault;
     const std::string text = read_regular_file(path, kMaxJpegBytes, fault);
     if (!fault.empty()) fail(path, fault);
+    return decode_jpeg(path, text);
+}
+
+Image decode_jpeg(const fs::path& path, std::string_view text) {
+    if (text.size() > kMaxJpegBytes)
+        fail(path, fmt::format("has {} bytes, the limit is {}", text.size(), kMaxJpegBytes));
     const auto* bytes = reinterpret_cast<const unsigned char*>(text.data());
     int width = 0, height = 0, channels = 0;
     stb::bytes_left = stb::kMaxImageBytes;

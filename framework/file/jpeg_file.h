@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "framework/image/image.h"
 
@@ -14,5 +15,7 @@ bool is_jpeg_file(const std::filesystem::path& path);
 /// Throws Error(ErrorKind::capture) that begins with the path: missing, damaged, cut off (stb itself would
 /// fill the rest with grey).
 Image read_jpeg(const std::filesystem::path& path);
+/// The same, of bytes in memory; `name` stands for the path.
+Image decode_jpeg(const std::filesystem::path& name, std::string_view bytes);
 
 }  // namespace aftershade

@@ -82,4 +82,10 @@ Image read_picture(const fs::path& path, PictureSpace space) {
     return is_exr_file(path) ? read_exr_picture(path) : read_encoded_picture(path, space);
 }
 
+Image decode_picture(const std::string& name, std::string_view bytes) {
+    if (bytes.starts_with("\x89PNG")) return decode_png(name, bytes);
+    if (bytes.starts_with("\xff\xd8\xff")) return decode_jpeg(name, bytes);
+    throw Error(ErrorKind::capture, name + ": neither PNG nor JPEG; save it as one of these");
+}
+
 }  // namespace aftershade

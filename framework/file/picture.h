@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "framework/image/image.h"
 
@@ -17,5 +19,9 @@ enum class PictureSpace { srgb, data };
 /// gAMA counts; an ICC profile, cICP or cHRM that is not sRGB's is refused. Grey becomes three equal
 /// channels. Throws Error(ErrorKind::capture) that begins with the path.
 Image read_picture(const std::filesystem::path& path, PictureSpace space);
+
+/// The bytes of a PNG or JPEG, with the numbers as they are stored, over their maximum; 1 to 4 channels. What
+/// the file says of its colours is left out. Throws Error(ErrorKind::capture) that begins with `name`.
+Image decode_picture(const std::string& name, std::string_view bytes);
 
 }  // namespace aftershade

@@ -280,7 +280,12 @@ std::optional<std::string> with_whole_palette(std::span<const unsigned char> byt
 }  // namespace
 
 Image read_png(const fs::path& path, PngColor* color) {
-    const std::string text = read_bytes(path);
+    return decode_png(path, read_bytes(path), color);
+}
+
+Image decode_png(const fs::path& path, std::string_view text, PngColor* color) {
+    if (text.size() > kMaxPngBytes)
+        fail(path, fmt::format("has {} bytes, the limit is {}", text.size(), kMaxPngBytes));
     const std::span bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size());
     const int size = static_cast<int>(bytes.size());
     int width = 0, height = 0, channels = 0;

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "framework/file/png_color.h"
 #include "framework/image/color_encoding.h"
@@ -42,5 +43,7 @@ std::optional<PngColor> read_png_color(const std::filesystem::path& path);
 /// Reads PNG of 8 or 16 bits into [0, 1] floats, 1 to 4 channels as stored; `color` gets what they mean.
 /// Throws Error(ErrorKind::capture).
 Image read_png(const std::filesystem::path& path, PngColor* color = nullptr);
+/// The same, of bytes in memory; `name` stands for the path.
+Image decode_png(const std::filesystem::path& name, std::string_view bytes, PngColor* color = nullptr);
 
 }  // namespace aftershade

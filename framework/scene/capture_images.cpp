@@ -43,7 +43,7 @@ void write_surface(Capture& capture, int x, int y, const Scene& scene, const Sur
     write(capture.images.at("albedo"), x, y, shading.albedo);
     write(capture.images.at("specular"), x, y, shading.specular);
     write(capture.images.at("emission"), x, y, shading.emission);
-    write(capture.images.at("normal"), x, y, surface.normal);
+    write(capture.images.at("normal"), x, y, shading.normal);
     write(capture.images.at("position"), x, y, surface.position);
     capture.images.at("object_id").uint_at(x, y, 0) = scene.objects[std::size_t(surface.object)].id;
 }

@@ -90,7 +90,7 @@ void merge(std::vector<Hit>& hits) {
 }  // namespace
 
 DeepImage SceneRenderer::render_deep(int frame, double time, std::array<double, 2> jitter_px) const {
-    const World world(geometry_, state_at(scene_, frame, time));
+    const World world = world_at(frame, time, kDeepRays);
     const SceneState before = state_at(scene_, frame, time - 1), after = state_at(scene_, frame, time + 1);
     const std::array<const SceneState*, 3> states = {&world.state(), &before, &after};
     const auto hits_of = [&](int x, int y) {
@@ -106,8 +106,9 @@ DeepImage SceneRenderer::render_deep(int frame, double time, std::array<double, 
             for (const Surface& surface : world.trace_through(ray, kMostSurfaces)) {
                 const Motion motion = motion_of(states, &surface, ray.direction);
                 const double opacity = world.opacity_of(surface);
+                const Shading shading = world.shade(surface, ray.origin);
                 hits.push_back({surface.object, met[surface.object]++, surface.t, surface.t,
-                                opacity * world.shade(surface, ray.origin).color(), opacity, surface.normal,
+                                opacity * shading.color(), opacity, shading.normal,
                                 scene_.objects[std::size_t(surface.object)].id, motion.velocity_px,
                                 motion.velocity_next_px});
             }

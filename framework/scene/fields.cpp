@@ -300,8 +300,10 @@ Block object_block() {
                       "Value in the role object_id; 0 stands for the object's place in the list, from 1."),
                   flag("casts_shadow", true, "Whether the object casts shadows on others."),
                   name_key("Name for \"parent\"; it is unique among objects without \"repeat\"."),
-                  grammar::optional("material", name_of("material"),
-                                    "Material. Groups, and scenes without \"materials\", need none."),
+                  grammar::optional(
+                      "material", name_of("material"),
+                      "Material. Groups, and scenes without \"materials\", need none; a mesh without one "
+                      "has the materials of its file."),
                   grammar::optional("parent", name_of("object"),
                                     "An earlier object, without \"repeat\", that it moves with."),
                   grammar::optional("repeat", object_of(repeat_block()),
@@ -363,12 +365,13 @@ Block light_block() {
                    .kinds = light_types()});
 }
 
-/// Where there are materials, everything that is seen has one; SceneReader checks it, object by object.
+/// Where there are materials, everything that is seen has one or a file that may give one; SceneReader checks
+/// it, object by object.
 grammar::Rule materials_rule() {
     return grammar::custom_rule({.check = {}, .schema = R"({
         "if": {"required": ["materials"], "properties": {"materials": {"minProperties": 1}}},
         "then": {"properties": {"objects": {"items": {"anyOf": [
-            {"properties": {"shape": {"const": "group"}}}, {"required": ["material"]}]}}}}})"});
+            {"properties": {"shape": {"enum": ["group", "mesh"]}}}, {"required": ["material"]}]}}}}})"});
 }
 
 Block make_scene_block() {

@@ -8,4 +8,13 @@ Bounds Mesh::bounds() const {
     return bounds;
 }
 
+Bounds transformed(const Bounds& bounds, const glm::dmat4& matrix) {
+    Bounds result;
+    for (int corner = 0; corner < 8; ++corner)
+        result.add(glm::dvec3(matrix * glm::dvec4(corner & 1 ? bounds.high.x : bounds.low.x,
+                                                  corner & 2 ? bounds.high.y : bounds.low.y,
+                                                  corner & 4 ? bounds.high.z : bounds.low.z, 1)));
+    return result;
+}
+
 }  // namespace aftershade::scene

@@ -25,6 +25,9 @@ struct Bounds {
     }
 };
 
+/// Around the corners of a box elsewhere.
+Bounds transformed(const Bounds& bounds, const glm::dmat4& matrix);
+
 struct Vertex {
     glm::dvec3 position{0};  ///< object space, m
     glm::dvec3 normal{0};    ///< unit length
@@ -35,6 +38,11 @@ struct Vertex {
 struct Mesh {
     std::vector<Vertex> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+    /// Of each triangle, where its file says so: index into the file's, or the scene's, materials; -1: none.
+    std::vector<int> materials = {};
+    /// Of each vertex: the direction of growing u in the normal's plane, unit length; w: the sign of the
+    /// bitangent, w * cross(normal, tangent). Length 0: none. Empty without a normal map.
+    std::vector<glm::dvec4> tangents = {};
     Bounds bounds() const;
 };
 

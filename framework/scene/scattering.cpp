@@ -137,7 +137,7 @@ ScatteringTruth SceneRenderer::render_scattering(int frame, const ScatteringSett
     Capture capture = render_capture(frame, frame, scattering.jitter_px);
     ScatteringTruth truth{std::move(capture.images.at("irradiance")), std::move(capture.images.at("color"))};
     const Image& albedo = capture.images.at("albedo");
-    const World world(geometry_, state_at(scene_, frame, frame));
+    const World world = world_at(frame, frame);
     std::vector<std::vector<ScatterPoint>> points;
     for (const Material& material : scene_.materials)
         points.push_back(material.scattering ? make_scatter_points(*material.scattering, scattering.samples)

@@ -9,8 +9,8 @@
 
 #include "framework/base/diagnostics.h"
 #include "framework/document/document.h"
-#include "framework/scattering/scattering_profile.h"
 #include "framework/scene/animated.h"
+#include "framework/scene/material.h"
 #include "framework/scene/mesh.h"
 
 namespace aftershade::scene {
@@ -33,31 +33,13 @@ struct Shape {
     int mesh = -1;              ///< index into Scene::meshes
 };
 
-/// How light goes under the surface: Burley's normalized diffusion with d_m (Christensen and Burley 2015),
-/// unless the profile is of another type; then d_m is of Burley's with the same mean square distance.
-struct Scattering {
-    glm::dvec3 d_m{0};
-    ScatteringProfile profile = {};
-};
-
-struct Material {
-    std::string name;
-    glm::dvec3 albedo{0.8};
-    glm::dvec3 albedo_2{0.8};     ///< of every second square where there are cells
-    glm::dvec2 checker_cells{0};  ///< squares along u and v; 0: none
-    double roughness = 0.5;       ///< GGX alpha is its square
-    double specular = 0.04;       ///< reflectance at normal incidence; 0: none
-    glm::dvec3 emission{0};       ///< radiance
-    double opacity = 1;           ///< share of the light that the surface stops; the rest continues unbent
-    std::optional<Scattering> scattering;
-};
-
 struct Object {
     std::string name;
     unsigned id = 0;  ///< role object_id; 0 stands for nothing hit
     Shape shape;
     int parent = -1;  ///< index into Scene::objects, always an earlier one
     int material = 0;
+    bool has_mesh_materials = false;  ///< its triangles' are those of the mesh, and `material` the rest's
     Animated<glm::dvec3> position_m{glm::dvec3(0)};
     Animated<glm::dvec3> rotation_deg{glm::dvec3(0)};  ///< about x, then y, then z
     Animated<glm::dvec3> scale{glm::dvec3(1)};
@@ -126,6 +108,15 @@ struct Scene {
     Shot shot_of(int frame) const;
     const Material& material_of(int object) const {
         return materials[std::size_t(objects[std::size_t(object)].material)];
+    }
+    /// The index of the material that light meets at a triangle of the object. It has the opacity of
+    /// material_of().
+    std::size_t material_at(int object, std::uint32_t triangle) const {
+        const Object& of = objects[std::size_t(object)];
+        if (!of.has_mesh_materials) return std::size_t(of.material);
+        const std::vector<int>& own = meshes[std::size_t(of.shape.mesh)].materials;
+        const int index = triangle < own.size() ? own[triangle] : -1;
+        return std::size_t(index < 0 ? of.material : index);
     }
     /// Whether any material lets light through.
     bool has_transparency() const;

@@ -76,8 +76,11 @@ void SceneReader::read_object(const grammar::Reader& reader) {
     object.position_m = animated_vec3(reader, "position");
     object.rotation_deg = animated_vec3(reader, "rotation");
     object.scale = animated_vec3(reader, "scale");
-    object.material = find_name(reader, "material", "material", materials_).value_or(0);
-    if (!reader.node().find("material") && object.shape.kind != ShapeKind::group && !scene_.materials.empty())
+    object.material = find_name(reader, "material", "material", materials_).value_or(-1);
+    const bool is_mesh = object.shape.kind == ShapeKind::mesh;
+    object.has_mesh_materials = is_mesh && !reader.has("material");
+    if (!reader.node().find("material") && object.shape.kind != ShapeKind::group && !is_mesh &&
+        !materials_.empty())
         diagnostics_.error(object.place, place + " has no material");
     object.parent = find_name(reader, "parent", "earlier object", objects_).value_or(-1);
     if (const auto repeat = reader.object("repeat")) {

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <utility>
 
 #include "framework/base/error.h"
 #include "framework/capture/frame_range.h"
+#include "framework/scene/gltf_model.h"
 #include "framework/scene/scene_reader_internal.h"
 
 namespace aftershade::scene {
@@ -37,14 +40,27 @@ void SceneReader::read(const Node& node) {
     if (const auto camera = reader.object("camera")) read_camera(*camera);
     if (const auto shutter = reader.object("shutter")) read_shutter(*shutter);
     for (const auto& [member, material] : reader.named("materials")) read_material(member->key, material);
-    for (const auto& [member, mesh] : reader.named("meshes")) read_mesh(member->key, mesh);
+    std::set<std::string> with_materials;  // meshes whose own materials some objects have
+    for (const grammar::Reader& object : reader.objects("objects"))
+        if (object.kind() == "mesh" && !object.has("material")) with_materials.insert(object.text("mesh"));
+    for (const auto& [member, mesh] : reader.named("meshes"))
+        read_mesh(member->key, mesh, with_materials.contains(member->key));
     for (const grammar::Reader& object : reader.objects("objects")) read_object(object);
     if (scene_.objects.size() > kMaxObjects)
         diagnostics_.error(
             reader.place("objects"),
             std::to_string(scene_.objects.size()) + " objects are more than " + std::to_string(kMaxObjects));
     for (const grammar::Reader& light : reader.objects("lights")) read_light(light);
-    if (scene_.materials.empty()) scene_.materials.emplace_back();
+    give_default_material();
+}
+
+/// To objects without one, and where there is none at all.
+void SceneReader::give_default_material() {
+    const auto needs_one = [](const Object& object) { return object.material < 0; };
+    const bool any = std::any_of(scene_.objects.begin(), scene_.objects.end(), needs_one);
+    if (any || scene_.materials.empty()) scene_.materials.emplace_back();
+    for (Object& object : scene_.objects)
+        if (needs_one(object)) object.material = int(scene_.materials.size()) - 1;
 }
 
 void SceneReader::read_frames(const grammar::Reader& reader) {
@@ -114,11 +130,23 @@ std::optional<Mesh> SceneReader::read_height_field(const grammar::Reader& reader
     return make_height_field(vec2(reader, "size"), waves, integer(reader, "segments"));
 }
 
-void SceneReader::read_mesh(const std::string& name, const grammar::Reader& reader) {
+/// The file's mesh; its materials become the scene's.
+Mesh SceneReader::read_model(const grammar::Reader& reader, const std::filesystem::path& path) {
+    GltfModel model = read_gltf_model(path);
+    for (const std::string& warning : model.warnings) diagnostics_.warning(reader.place("file"), warning);
+    const int first = int(scene_.materials.size());
+    for (int& material : model.mesh.materials)
+        if (material >= 0) material += first;
+    for (Material& material : model.materials) scene_.materials.push_back(std::move(material));
+    return std::move(model.mesh);
+}
+
+void SceneReader::read_mesh(const std::string& name, const grammar::Reader& reader, bool with_materials) {
     std::optional<Mesh> mesh;
     if (const auto height_field = reader.object("height_field")) mesh = read_height_field(*height_field);
     else if (reader.has("file")) try {
-            mesh = read_gltf(scene_.path.parent_path() / reader.text("file"));
+            const std::filesystem::path path = scene_.path.parent_path() / reader.text("file");
+            mesh = with_materials ? read_model(reader, path) : read_gltf(path);
         } catch (const Error& error) {
             diagnostics_.error(reader.place("file"), error.what());
         }

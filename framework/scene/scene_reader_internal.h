@@ -23,7 +23,9 @@ private:
     void read_camera(const grammar::Reader& reader);
     void read_shutter(const grammar::Reader& reader);
     void read_material(const std::string& name, const grammar::Reader& reader);
-    void read_mesh(const std::string& name, const grammar::Reader& reader);
+    void read_mesh(const std::string& name, const grammar::Reader& reader, bool with_materials);
+    Mesh read_model(const grammar::Reader& reader, const std::filesystem::path& path);
+    void give_default_material();
     std::optional<Mesh> read_height_field(const grammar::Reader& reader);
 
     void read_object(const grammar::Reader& reader);

@@ -1,7 +1,9 @@
 #include "framework/scene/scene_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "framework/base/parallel.h"
@@ -88,7 +90,7 @@ Capture SceneRenderer::render_capture(int frame, double time, std::array<double,
 
 std::vector<Capture> SceneRenderer::render_layers(int frame, double time, std::array<double, 2> jitter_px,
                                                   int layers) const {
-    const World world(geometry_, state_at(scene_, frame, time));
+    const World world = world_at(frame, time);
     const SceneState before = state_at(scene_, frame, time - 1), after = state_at(scene_, frame, time + 1);
     const std::array<const SceneState*, 3> states = {&world.state(), &before, &after};
     std::vector<Capture> captures(std::size_t(layers),
@@ -133,8 +135,10 @@ SceneRenderer::SamplePoint SceneRenderer::sample_point(const TruthSettings& trut
     return point;
 }
 
-World SceneRenderer::world_at(int frame, double time) const {
-    return World(geometry_, state_at(scene_, frame, time));
+World SceneRenderer::world_at(int frame, double time, double samples_of_px) const {
+    SceneState state = state_at(scene_, frame, time);
+    const double px_per_tangent = pixels_per_tangent(state.camera) * std::sqrt(samples_of_px);
+    return World(geometry_, std::move(state), px_per_tangent);
 }
 
 /// The moments of one sample: its own for accumulation, several to choose from where pixels have their own.
@@ -146,7 +150,7 @@ std::vector<World> SceneRenderer::moments_of(int frame, const TruthSettings& tru
     for (int i = 0; i < count; ++i) {
         const double time =
             truth.kinds.shutter ? exposure.middle(sample * count + i, truth.samples * count) : frame;
-        moments.emplace_back(geometry_, state_at(scene_, frame, time));
+        moments.push_back(world_at(frame, time, truth.kinds.antialias ? truth.samples : 1));
     }
     return moments;
 }

@@ -111,9 +111,11 @@ public:
     /// Where the pinhole camera sees a point (w 1) or a direction (w 0), px; false behind it.
     bool project(const CameraState& camera, const glm::dvec4& point, glm::dvec2& pixel) const;
     double pixels_per_tangent(const CameraState& camera) const;
-    World world_at(int frame, double time) const;
+    /// Textures are filtered over the part of a pixel that one of its samples has.
+    World world_at(int frame, double time, double samples_of_px = 1) const;
 
     const Scene& scene() const { return scene_; }
+    const Geometry& geometry() const { return geometry_; }
     int width_px() const { return width_px_; }
     int height_px() const { return height_px_; }
     int threads() const { return threads_; }

@@ -160,12 +160,24 @@ ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
     return place;
 }
 
-dvec3 ShadingGrids::mean_albedo(const ShadingPlace& place, std::uint32_t id) const {
+dvec2 ShadingGrids::uv_through(const ShadingPlace& place, std::uint32_t id, const dvec2& part) const {
     const Mesh& mesh = mesh_of(place.object);
-    const Material& material = renderer_.scene().material_of(place.object);
+    const dvec2 on = barycentric_on_plane(ray_through(place, id, part), corners_of(mesh, place.triangle));
+    return mesh_point(mesh, {0, place.triangle, on}).uv;
+}
+
+glm::dmat2 ShadingGrids::uv_of_cell(const ShadingPlace& place, std::uint32_t id) const {
+    return {uv_through(place, id, {1, 0.5}) - uv_through(place, id, {0, 0.5}),
+            uv_through(place, id, {0.5, 1}) - uv_through(place, id, {0.5, 0})};
+}
+
+dvec3 ShadingGrids::mean_albedo(const ShadingPlace& place, std::uint32_t id, const Material& material,
+                                const glm::dmat2& uv_of_cell) const {
+    const Mesh& mesh = mesh_of(place.object);
     const std::array<dvec3, 3> corners = corners_of(mesh, place.triangle);
+    const glm::dmat2 uv_of_place = uv_of_cell / double(kAlbedoPoints);
     const auto albedo = [&](const dvec2& barycentric) {
-        return albedo_at(material, mesh_point(mesh, {0, place.triangle, barycentric}).uv);
+        return albedo_at(material, mesh_point(mesh, {0, place.triangle, barycentric}).uv, uv_of_place);
     };
     dvec3 sum(0);
     int count = 0;
@@ -180,12 +192,15 @@ dvec3 ShadingGrids::mean_albedo(const ShadingPlace& place, std::uint32_t id) con
 }
 
 dvec3 ShadingGrids::shade(std::uint32_t id) const {
+    const Scene& scene = renderer_.scene();
     const ShadingPlace place = place_of(id);
+    const Material& material = scene.materials[scene.material_at(place.object, place.triangle)];
     Surface surface = world_.surface_on(place.object, place.triangle, place.barycentric, place.from_behind);
     surface.light_seed = light_seed(id, 0);
+    if (material.maps.any()) surface.uv_of_pixel = uv_of_cell(place, id);
     Shading shading = world_.shade(surface, dvec3(world_.state().camera.world_from_camera[3]));
-    if (renderer_.scene().material_of(place.object).checker_cells != dvec2(0))
-        shading.albedo = mean_albedo(place, id);
+    if (material.checker_cells != dvec2(0) || material.maps.any())
+        shading.albedo = mean_albedo(place, id, material, surface.uv_of_pixel.value_or(glm::dmat2(0)));
     return shading.color();
 }
 

@@ -74,7 +74,11 @@ private:
     const Mesh& mesh_of(int object) const;
     /// The ray through `part` of a cell, 0 to 1 along x and y, in the object's space.
     Ray ray_through(const ShadingPlace& place, std::uint32_t id, const glm::dvec2& part) const;
-    glm::dvec3 mean_albedo(const ShadingPlace& place, std::uint32_t id) const;
+    glm::dvec2 uv_through(const ShadingPlace& place, std::uint32_t id, const glm::dvec2& part) const;
+    /// The sides of a cell in texture coordinates.
+    glm::dmat2 uv_of_cell(const ShadingPlace& place, std::uint32_t id) const;
+    glm::dvec3 mean_albedo(const ShadingPlace& place, std::uint32_t id, const Material& material,
+                           const glm::dmat2& uv_of_cell) const;
 
     const SceneRenderer& renderer_;
     World world_;                                ///< at the frame's own time

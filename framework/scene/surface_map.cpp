@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 
@@ -122,7 +123,9 @@ SurfacePoint interpolate(const Vertex& a, const Vertex& b, const Vertex& c, cons
     return {position, length > 0 ? normal / length : a.normal};
 }
 
-void draw_triangle(SurfaceMap& map, const Vertex& a, const Vertex& b, const Vertex& c) {
+void draw_triangle(SurfaceMap& map, const Mesh& mesh, std::uint32_t index) {
+    const auto& corner = mesh.triangles[index];
+    const Vertex &a = mesh.vertices[corner[0]], &b = mesh.vertices[corner[1]], &c = mesh.vertices[corner[2]];
     const double whole = area(a.uv, b.uv, c.uv);
     if (!(std::abs(whole) > 0) || !std::isfinite(whole)) return;
     const int side_px = map.position.width();
@@ -137,6 +140,9 @@ void draw_triangle(SurfaceMap& map, const Vertex& a, const Vertex& b, const Vert
                 whole;
             if (weights.x < 0 || weights.y < 0 || weights.z < 0) continue;
             put(map, x, y, interpolate(a, b, c, weights));
+            map.triangle.uint_at(x, y, 0) = index;
+            map.weights.at(x, y, 0) = float(weights.y);
+            map.weights.at(x, y, 1) = float(weights.z);
         }
 }
 
@@ -144,10 +150,11 @@ void draw_triangle(SurfaceMap& map, const Vertex& a, const Vertex& b, const Vert
 
 SurfaceMap make_surface_map(const Shape& shape, const Mesh* mesh, int side_px) {
     assert(side_px >= 1 && (shape.kind == ShapeKind::mesh) == (mesh != nullptr));
-    SurfaceMap map{Image(side_px, side_px, 4), Image(side_px, side_px, 4)};
+    SurfaceMap map{Image(side_px, side_px, 4), Image(side_px, side_px, 4), {}, {}};
     if (mesh) {
-        for (const auto& [a, b, c] : mesh->triangles)
-            draw_triangle(map, mesh->vertices[a], mesh->vertices[b], mesh->vertices[c]);
+        map.triangle = Image(side_px, side_px, 1, ComponentType::uint32);
+        map.weights = Image(side_px, side_px, 2);
+        for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) draw_triangle(map, *mesh, i);
         return map;
     }
     for (int y = 0; y < side_px; ++y)

@@ -12,6 +12,8 @@ namespace aftershade::scene {
 struct SurfaceMap {
     Image position;  ///< xyz in m; w is 1 where the surface has a point with that uv, else all is 0
     Image normal;    ///< xyz of unit length, outwards; w as position's
+    Image triangle;  ///< of a mesh: a uint; else empty
+    Image weights;   ///< of a mesh: those of the triangle's second and third corner
 };
 
 /// The texture coordinates of a surface point p = (x, y, z) with the normal n, in object space, where h is

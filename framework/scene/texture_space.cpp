@@ -14,7 +14,7 @@ Capture SceneRenderer::render_texture_space(int frame, int object, int side_px) 
     const Shape& shape = scene_.objects[std::size_t(object)].shape;
     const MeshTree* mesh = geometry_.mesh_of(shape);
     const SurfaceMap map = make_surface_map(shape, mesh ? mesh->mesh : nullptr, side_px);
-    const World world(geometry_, state_at(scene_, frame, frame));
+    const World world = world_at(frame, frame);
     std::vector<std::string> roles(all_roles().begin(), all_roles().end());
     std::erase_if(roles, [](const std::string& role) {
         const RoleKind kind = kind_of_role(role);
@@ -37,6 +37,11 @@ Capture SceneRenderer::render_texture_space(int frame, int object, int side_px) 
             point.uv = {(x + 0.5) / side_px, (y + 0.5) / side_px};
             Surface surface = world.surface(object, point);
             surface.precision = 1e-6;  // the map holds floats
+            surface.uv_of_pixel = glm::dmat2(1.0 / side_px);
+            if (mesh) {
+                surface.triangle = map.triangle.uint_at(x, y, 0);
+                surface.barycentric = {map.weights.at(x, y, 0), map.weights.at(x, y, 1)};
+            }
             write_surface(capture, x, y, scene_, surface, world.shade(surface, eye));
         }
     });

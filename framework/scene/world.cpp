@@ -17,15 +17,6 @@ dvec3 point(const dmat4& matrix, const dvec3& p) {
     return dvec3(matrix * dvec4(p, 1));
 }
 
-Bounds transformed(const Bounds& bounds, const dmat4& matrix) {
-    Bounds result;
-    for (int corner = 0; corner < 8; ++corner)
-        result.add(point(
-            matrix, {corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
-                     corner & 4 ? bounds.high.z : bounds.low.z}));
-    return result;
-}
-
 /// Both normals on the side that the ray came from.
 void face(Surface& surface, bool from_behind) {
     surface.from_behind = from_behind;
@@ -40,7 +31,8 @@ Geometry::Geometry(const Scene& scene) : scene_(scene) {
     for (const Mesh& mesh : scene.meshes) meshes_.emplace_back(mesh);
 }
 
-World::World(const Geometry& geometry, SceneState state) : geometry_(&geometry), state_(std::move(state)) {
+World::World(const Geometry& geometry, SceneState state, double px_per_tangent)
+    : geometry_(&geometry), state_(std::move(state)), px_per_tangent_(px_per_tangent) {
     std::vector<Bounds> bounds;
     for (std::size_t i = 0; i < state_.world_from_object.size(); ++i) {
         const Object& object = scene().objects[i];
@@ -104,6 +96,7 @@ std::optional<Surface> World::trace(const Ray& ray, double low, double high, int
         surface(nearest->object, point_of(*nearest->shape, nearest->mesh, nearest->local(ray), nearest_hit));
     found.t = nearest_hit.t;
     found.triangle = nearest_hit.triangle;
+    found.barycentric = nearest_hit.barycentric;
     face(found, glm::dot(found.geometric_normal, ray.direction) > 0);
     return found;
 }
@@ -188,6 +181,7 @@ Surface World::surface_on(int object, std::uint32_t triangle, const glm::dvec2& 
     const Seen& seen = seen_[std::size_t(seen_of_object_[std::size_t(object)])];
     Surface found = surface(object, point_of(*seen.shape, seen.mesh, {}, {0, triangle, barycentric}));
     found.triangle = triangle;
+    found.barycentric = barycentric;
     face(found, from_behind);
     return found;
 }

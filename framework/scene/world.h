@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "framework/scene/material.h"
 #include "framework/scene/scene.h"
 #include "framework/scene/scene_state.h"
 #include "framework/scene/shape.h"
@@ -19,6 +20,7 @@ public:
     /// `scene` must outlive this.
     explicit Geometry(const Scene& scene);
     const Scene& scene() const { return scene_; }
+    const MeshTree& mesh(std::size_t index) const { return meshes_[index]; }
     const MeshTree* mesh_of(const Shape& shape) const {
         return shape.mesh >= 0 ? &meshes_[std::size_t(shape.mesh)] : nullptr;
     }
@@ -34,10 +36,13 @@ struct Surface {
     glm::dvec3 normal{0};            ///< world, unit length, for shading
     glm::dvec3 geometric_normal{0};  ///< world, unit length; both on the side that the ray came from
     glm::dvec2 uv{0};
-    bool from_behind = false;                 ///< whether that is the inside, by the shape's outward normal
-    int object = -1;                          ///< index into Scene::objects
-    std::uint32_t triangle = 0;               ///< of a mesh
-    double t = 0;                             ///< along the ray
+    glm::dvec2 barycentric{0};   ///< of a mesh, as in ShapeHit
+    bool from_behind = false;    ///< whether that is the inside, by the shape's outward normal
+    int object = -1;             ///< index into Scene::objects
+    std::uint32_t triangle = 0;  ///< of a mesh
+    double t = 0;                ///< along the ray
+    /// As SurfaceTexture::at() has it; without one, that of a pixel of the camera.
+    std::optional<glm::dmat2> uv_of_pixel;
     double precision = 1e-9;                  ///< of the position, over the size of its coordinates
     std::optional<std::uint32_t> light_seed;  ///< of its random rays; without one, a hash of `local`
 };
@@ -48,16 +53,16 @@ struct Shading {
     glm::dvec3 albedo{0};
     glm::dvec3 specular{0};
     glm::dvec3 emission{0};
+    glm::dvec3 normal{0};  ///< with the normal map
     glm::dvec3 color() const { return albedo * irradiance + specular + emission; }
 };
-
-glm::dvec3 albedo_at(const Material& material, const glm::dvec2& uv);
 
 /// [immutable: any thread]
 class World {
 public:
-    /// `geometry` must outlive this.
-    World(const Geometry& geometry, SceneState state);
+    /// `geometry` must outlive this. Textures are filtered over pixels of the camera of this many for each
+    /// tangent; 0: not at all.
+    World(const Geometry& geometry, SceneState state, double px_per_tangent = 0);
 
     const SceneState& state() const { return state_; }
     const Scene& scene() const { return geometry_->scene(); }
@@ -94,7 +99,7 @@ public:
                        bool from_behind) const;
 
     /// E / pi, with shadows.
-    glm::dvec3 irradiance(const Surface& surface) const { return light(surface, nullptr).irradiance; }
+    glm::dvec3 irradiance(const Surface& surface) const { return light(surface, {}, nullptr).irradiance; }
     Shading shade(const Surface& surface, const glm::dvec3& eye) const;
 
 private:
@@ -116,14 +121,18 @@ private:
     static constexpr double kPast = 1 + 1e-7;
     template <class Visit>
     void walk(const Ray& ray, double low, double& high, const Visit& visit) const;
-    Shading light(const Surface& surface, const glm::dvec3* to_eye) const;
-    void add_light(std::size_t index, const Surface& surface, const glm::dvec3* to_eye,
+    Shading light(const Surface& surface, const Finish& finish, const glm::dvec3* to_eye) const;
+    void add_light(std::size_t index, const Surface& surface, const Finish& finish, const glm::dvec3* to_eye,
                    Shading& shading) const;
+    glm::dmat2 uv_of_pixel(const Surface& surface, const glm::dvec3& eye) const;
+    glm::dvec3 mapped_normal(const Surface& surface, const MaterialMaps& maps,
+                             const glm::dmat2& uv_of_pixel) const;
     double visible_part(std::size_t light, const Surface& surface) const;
     double visible_ambient(const Surface& surface) const;
 
     const Geometry* geometry_;
     SceneState state_;
+    double px_per_tangent_;
     std::vector<int> seen_of_object_;  ///< index into seen_, -1: there is nothing to see of it
     std::vector<Seen> seen_;
     Bvh bvh_;  ///< over seen_, in world space

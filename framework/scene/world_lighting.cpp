@@ -81,11 +81,11 @@ double pattern_at(const LightPattern& pattern, const dvec3& position) {
 }
 
 /// GGX with the height-correlated masking of Heitz 2014 and Schlick's Fresnel; without the light's cosine.
-double highlight(const Material& material, const dvec3& normal, const dvec3& to_light, const dvec3& to_eye) {
+dvec3 highlight(const Finish& finish, const dvec3& normal, const dvec3& to_light, const dvec3& to_eye) {
     const double n_l = glm::dot(normal, to_light), n_v = glm::dot(normal, to_eye);
-    if (material.specular <= 0 || n_l <= 0 || n_v <= 0) return 0;
+    if (finish.reflectance == dvec3(0) || n_l <= 0 || n_v <= 0) return dvec3(0);
     const dvec3 half_way = glm::normalize(to_light + to_eye);
-    const double alpha = material.roughness * material.roughness, a2 = alpha * alpha;
+    const double alpha = finish.roughness * finish.roughness, a2 = alpha * alpha;
     const double n_h = std::clamp(glm::dot(normal, half_way), 0.0, 1.0);
     const double base = n_h * n_h * (a2 - 1) + 1;
     const double distribution = a2 / (std::numbers::pi * base * base);
@@ -94,17 +94,10 @@ double highlight(const Material& material, const dvec3& normal, const dvec3& to_
     const double grazing = 1 - std::clamp(glm::dot(half_way, to_light), 0.0, 1.0),
                  squared = grazing * grazing;
     return distribution * masking *
-           (material.specular + (1 - material.specular) * squared * squared * grazing);
+           (finish.reflectance + (1.0 - finish.reflectance) * squared * squared * grazing);
 }
 
 }  // namespace
-
-dvec3 albedo_at(const Material& material, const glm::dvec2& uv) {
-    const auto cell = [](double at) { return std::int64_t(std::floor(at)); };
-    const bool second =
-        ((cell(uv.x * material.checker_cells.x) + cell(uv.y * material.checker_cells.y)) & 1) != 0;
-    return second ? material.albedo_2 : material.albedo;
-}
 
 /// Of an area light: the share of a grid of its points that shines through. Points below the surface's
 /// horizon do not count, since polygon_cosine cuts them off; where all are, the highest corner stands for the
@@ -149,7 +142,7 @@ double World::visible_ambient(const Surface& surface) const {
     return seen / rays;
 }
 
-void World::add_light(std::size_t index, const Surface& surface, const dvec3* to_eye,
+void World::add_light(std::size_t index, const Surface& surface, const Finish& finish, const dvec3* to_eye,
                       Shading& shading) const {
     const Light& light = scene().lights[index];
     const LightState& now = state_.lights[index];
@@ -178,26 +171,30 @@ void World::add_light(std::size_t index, const Surface& surface, const dvec3* to
     }
     shading.irradiance += now.color_intensity * (received / std::numbers::pi);
     if (!to_eye || highlighted <= 0) return;
-    const Material& material = scene().material_of(surface.object);
     shading.specular +=
-        now.color_intensity * (highlighted * highlight(material, surface.normal, toward, *to_eye));
+        now.color_intensity * (highlighted * highlight(finish, surface.normal, toward, *to_eye));
 }
 
-Shading World::light(const Surface& surface, const dvec3* to_eye) const {
+Shading World::light(const Surface& surface, const Finish& finish, const dvec3* to_eye) const {
     Shading shading;
-    shading.irradiance = scene().ambient;
+    shading.irradiance = finish.ambient * scene().ambient;
     if (scene().ambient_rays > 0 && scene().ambient != dvec3(0))
         shading.irradiance *= visible_ambient(surface);
-    for (std::size_t i = 0; i < state_.lights.size(); ++i) add_light(i, surface, to_eye, shading);
+    for (std::size_t i = 0; i < state_.lights.size(); ++i) add_light(i, surface, finish, to_eye, shading);
     return shading;
 }
 
 Shading World::shade(const Surface& surface, const dvec3& eye) const {
     const dvec3 to_eye = glm::normalize(eye - surface.position);
-    Shading shading = light(surface, &to_eye);
-    const Material& material = scene().material_of(surface.object);
-    shading.albedo = albedo_at(material, surface.uv);
-    shading.emission = material.emission;
+    const Material& material = scene().materials[scene().material_at(surface.object, surface.triangle)];
+    const glm::dmat2 footprint = material.maps.any() ? uv_of_pixel(surface, eye) : glm::dmat2(0);
+    const Finish finish = finish_at(material, surface.uv, footprint);
+    Surface lit = surface;
+    if (material.maps.normal) lit.normal = mapped_normal(surface, material.maps, footprint);
+    Shading shading = light(lit, finish, &to_eye);
+    shading.albedo = finish.albedo;
+    shading.emission = finish.emission;
+    shading.normal = lit.normal;
     return shading;
 }
 

@@ -52,9 +52,9 @@ struct Room {
 class LightGraph {
 public:
     LightGraph(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
-               const Room& room)
+               const Room& room, std::size_t max_buffer_bytes)
         : passes_(passes),
-          scene_(make_light_scene(renderer, grids)),
+          scene_(make_light_scene(renderer, grids, max_buffer_bytes)),
           scene_path_(renderer.scene().path.string()),
           executor_(executor_of(passes, make_graph(room))) {
         shade_.world_from_camera = glm::mat4(grids.reference().camera.world_from_camera);
@@ -98,7 +98,9 @@ private:
         blockers_ = graph.import_buffer("blockers", room_for(scene_.blockers));
         starts_ = graph.import_buffer("starts", room_for(scene_.starts));
         surfaces_ = graph.import_buffer("surfaces", room_for(scene_.surfaces));
-        materials_ = graph.import_buffer("materials", room_for(scene_.materials));
+        materials_ = graph.import_buffer("materials", room_for(scene_.materials.materials));
+        textures_ = graph.import_buffer("textures", room_for(scene_.materials.textures));
+        tangents_ = graph.import_buffer("tangents", room_for(scene_.tangents));
         lights_ = graph.import_buffer("lights", room_for(scene_.lights));
         ids_ = graph.import_buffer("ids", {room.ids * sizeof(std::uint32_t)});
         graph::Pass shade =
@@ -107,6 +109,8 @@ private:
         shade.uniforms = {{0, bytes_of(shade_)}};
         const graph::BufferHandle read[] = {nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_};
         for (int i = 0; i < int(std::size(read)); ++i) shade.buffers.push_back({read[i], i, Access::read});
+        shade.buffers.push_back({textures_, 8, Access::read});
+        shade.buffers.push_back({tangents_, 10, Access::read});
         shade.buffers.push_back({light, 7, Access::write});
         const std::size_t shaded = shade.buffers.size() - 1;
         const graph::Written written = add_with_loops(graph, std::move(shade));
@@ -129,7 +133,9 @@ private:
         set(executor_, blockers_, scene_.blockers);
         set(executor_, starts_, scene_.starts);
         set(executor_, surfaces_, scene_.surfaces);
-        set(executor_, materials_, scene_.materials);
+        set(executor_, materials_, scene_.materials.materials);
+        set(executor_, textures_, scene_.materials.textures);
+        set(executor_, tangents_, scene_.tangents);
         set(executor_, lights_, scene_.lights);
     }
 
@@ -137,8 +143,8 @@ private:
     LightScene scene_;
     ShadeSettings shade_;
     ResolveSettings resolve_;
-    graph::BufferHandle nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_, addresses_, means_,
-        unfinished_;
+    graph::BufferHandle nodes_, blockers_, starts_, surfaces_, materials_, textures_, tangents_, lights_,
+        ids_, addresses_, means_, unfinished_;
     std::string scene_path_;
     graph::Executor executor_;  // made of all the above
 };
@@ -160,7 +166,8 @@ Image resolve_light(Passes& passes, const scene::SceneRenderer& renderer, const 
                       width * std::max(count * sizeof(std::uint32_t), sizeof(vec4)), 1, max_buffer_bytes);
     const std::size_t most = std::min(max_buffer_bytes / sizeof(vec4), std::size_t(kGroup) * kMaxGroups);
     const std::size_t slice = std::clamp(ids.size(), std::size_t(1), most);
-    LightGraph graph(passes, renderer, grids, {slice, width * std::size_t(bands.rows), count});
+    LightGraph graph(passes, renderer, grids, {slice, width * std::size_t(bands.rows), count},
+                     max_buffer_bytes);
     Image color(addresses.width_px, addresses.height_px, 4);
     std::size_t first = 0;
     do {

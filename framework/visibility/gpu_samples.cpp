@@ -4,13 +4,12 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "framework/scene/shading_grid.h"
 #include "framework/visibility/light_scene.h"
+#include "framework/visibility/ray_buffers.h"
 #include "framework/visibility/sample_rays.h"
 
 namespace aftershade {
@@ -30,9 +29,10 @@ struct GpuCorners {
     vec4 v_material{0};
 };
 
-std::vector<GpuCorners> corners_of(const scene::Scene& scene, const GpuScene& triangles) {
+/// In the order of gpu_sources().
+std::vector<GpuCorners> corners_of(const scene::Scene& scene) {
     std::vector<GpuCorners> corners;
-    for (const auto& [object, triangle] : triangles.sources) {
+    for (const auto& [object, triangle] : gpu_sources(scene)) {
         const scene::Object& of = scene.objects[object];
         const scene::Mesh& mesh = scene.meshes[std::size_t(of.shape.mesh)];
         GpuCorners& own = corners.emplace_back();
@@ -41,7 +41,7 @@ std::vector<GpuCorners> corners_of(const scene::Scene& scene, const GpuScene& tr
             own.normals[std::size_t(i)] = with(vertex.normal, vertex.uv.x);
             own.v_material[i] = float(vertex.uv.y);
         }
-        own.v_material.w = std::bit_cast<float>(std::uint32_t(of.material));
+        own.v_material.w = std::bit_cast<float>(std::uint32_t(scene.material_at(int(object), triangle)));
     }
     return corners;
 }
@@ -57,68 +57,73 @@ std::vector<GpuLight> lights_at(const std::vector<scene::World>& moments) {
 /// One pass: the light of one sample of each pixel of a band, added to that of the samples before it.
 class LightSamplesGraph {
 public:
-    LightSamplesGraph(Passes& passes, const scene::Scene& scene, const GpuScene& triangles,
-                      const SampleSettings& settings, std::size_t pixels)
+    LightSamplesGraph(Passes& passes, const scene::SceneRenderer& renderer, const SampleSettings& settings,
+                      std::size_t pixels, std::size_t max_buffer_bytes)
         : passes_(passes),
+          renderer_(renderer),
+          scene_(make_gpu_scene(renderer)),
           settings_(settings),
-          scene_path_(scene.path.string()),
-          materials_(gpu_materials(scene)),
-          corners_(corners_of(scene, triangles)),
-          executor_(executor_of(passes, make_graph(triangles, pixels))) {
-        set(executor_, nodes_in_, triangles.nodes);
-        set(executor_, triangles_in_, triangles.triangles);
-        set(executor_, materials_in_, materials_);
+          materials_(gpu_materials(renderer.scene(), max_buffer_bytes)),
+          corners_(corners_of(renderer.scene())),
+          tangents_(gpu_tangents(renderer.scene(), gpu_sources(renderer.scene()))),
+          rays_(graph_, scene_, pixels),
+          executor_(executor_of(passes, make_graph(pixels))) {
+        rays_.set_scene(executor_, scene_);
+        set(executor_, materials_in_, materials_.materials);
+        set(executor_, textures_in_, materials_.textures);
+        set(executor_, tangents_in_, tangents_);
         set(executor_, corners_in_, corners_);
     }
 
     void light(int sample, const std::vector<scene::World>& moments, const std::vector<GpuRay>& rays) {
-        settings_.pixel_count = std::uint32_t(rays.size());
-        settings_.sample_index = std::uint32_t(sample);
-        set(executor_, moments_in_, make_moments(moments));
+        rays_.set_sample(executor_, renderer_, sample, moments, rays, settings_);
         set(executor_, lights_in_, lights_at(moments));
-        set(executor_, rays_in_, rays);
         executor_.set_uniforms(0, 0, bytes_of(settings_));
         passes_.run(executor_);
-        check_loops(executor_, unfinished_, scene_path_);
+        check_loops(executor_, unfinished_, renderer_.scene().path.string());
     }
     /// The sum of the samples' light for each pixel of the band; w: how many of them met something.
     std::vector<vec4> sums() { return values_of<vec4>(executor_, sums_); }
 
 private:
-    graph::FrameGraph make_graph(const GpuScene& triangles, std::size_t pixels) {
+    graph::FrameGraph make_graph(std::size_t pixels) {
         constexpr std::size_t kMoments = scene::SceneRenderer::kMomentsOfSample;
-        graph::FrameGraph graph;
-        nodes_in_ = graph.import_buffer("nodes", room_for(triangles.nodes));
-        triangles_in_ = graph.import_buffer("triangles", room_for(triangles.triangles));
-        moments_in_ = graph.import_buffer("moments", {kMoments * settings_.object_count * 3 * sizeof(vec4)});
-        rays_in_ = graph.import_buffer("rays", {pixels * sizeof(GpuRay)});
-        materials_in_ = graph.import_buffer("materials", room_for(materials_));
-        lights_in_ = graph.import_buffer("lights",
-                                         {kMoments * std::max(settings_.light_count, 1u) * sizeof(GpuLight)});
-        corners_in_ = graph.import_buffer("corners", room_for(corners_));
+        materials_in_ = graph_.import_buffer("materials", room_for(materials_.materials));
+        textures_in_ = graph_.import_buffer("textures", room_for(materials_.textures));
+        tangents_in_ = graph_.import_buffer("tangents", room_for(tangents_));
+        lights_in_ = graph_.import_buffer(
+            "lights", {kMoments * std::max(settings_.light_count, 1u) * sizeof(GpuLight)});
+        corners_in_ = graph_.import_buffer("corners", room_for(corners_));
         graph::Pass pass =
             passes_.pass("visibility.light_samples", visibility_light_samples_shader(), group_count(pixels));
         pass.uniforms = {{0, bytes_of(settings_)}};
-        const graph::BufferHandle read[] = {nodes_in_,     triangles_in_, moments_in_, rays_in_,
-                                            materials_in_, lights_in_,    corners_in_};
-        for (int i = 0; i < int(std::size(read)); ++i) pass.buffers.push_back({read[i], i, Access::read});
+        rays_.add_to(pass);
+        pass.buffers.push_back({materials_in_, 4, Access::read});
+        pass.buffers.push_back({lights_in_, 5, Access::read});
+        pass.buffers.push_back({corners_in_, 6, Access::read});
+        pass.buffers.push_back({textures_in_, 8, Access::read});
+        pass.buffers.push_back({tangents_in_, 10, Access::read});
         // It also reads what its run for the sample before has left there, which is not of this frame.
-        pass.buffers.push_back({graph.create_buffer("sums", {pixels * sizeof(vec4)}), 7, Access::write});
+        pass.buffers.push_back({graph_.create_buffer("sums", {pixels * sizeof(vec4)}), 7, Access::write});
         const std::size_t sums = pass.buffers.size() - 1;
-        const graph::Written written = add_with_loops(graph, std::move(pass));
+        const graph::Written written = add_with_loops(graph_, std::move(pass));
         sums_ = written.buffers[sums];
         unfinished_ = written.buffers.back();
-        graph.keep(sums_);
-        return graph;
+        graph_.keep(sums_);
+        return std::move(graph_);
     }
 
     Passes& passes_;
+    const scene::SceneRenderer& renderer_;
+    GpuScene scene_;
     SampleSettings settings_;
-    std::string scene_path_;
-    std::vector<GpuMaterial> materials_;
+    GpuMaterials materials_;
     std::vector<GpuCorners> corners_;
-    graph::BufferHandle nodes_in_, triangles_in_, moments_in_, rays_in_, materials_in_, lights_in_,
-        corners_in_, sums_, unfinished_;
+    std::vector<vec4> tangents_;
+    graph::FrameGraph graph_;  // until the executor has it
+    RayBuffers rays_;
+    graph::BufferHandle materials_in_, textures_in_, tangents_in_, lights_in_, corners_in_, sums_,
+        unfinished_;
     graph::Executor executor_;  // made of all the above
 };
 
@@ -128,14 +133,10 @@ scene::LitSamples light_samples(Passes& passes, const scene::SceneRenderer& rend
                                 const scene::VisibilitySettings& settings, std::size_t max_buffer_bytes) {
     const auto width = std::size_t(renderer.width_px());
     const scene::TruthSettings truth = truth_of(settings);
-    scene::ShadingGridSettings one_cell;  // of each triangle, since no cell is read here
-    one_cell.rate = 1e-6;
-    const scene::ShadingGrids grids(renderer, frame, one_cell);
-    const GpuScene triangles = make_gpu_scene(renderer, grids, frame);
-    const SampleSettings values =
-        sample_settings(renderer, triangles, grids.reference().camera, settings.samples);
+    const scene::World now = renderer.world_at(frame, frame);
+    const SampleSettings values = sample_settings(renderer, now.state().camera, settings.samples);
     const Bands bands(renderer.width_px(), renderer.height_px(), width * sizeof(GpuRay), 1, max_buffer_bytes);
-    LightSamplesGraph graph(passes, renderer.scene(), triangles, values, width * std::size_t(bands.rows));
+    LightSamplesGraph graph(passes, renderer, values, width * std::size_t(bands.rows), max_buffer_bytes);
     scene::LitSamples lit(renderer.width_px(), renderer.height_px());
     bands.for_each([&](int first, int rows) {
         for (int sample = 0; sample < settings.samples; ++sample) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <bit>
-#include <span>
 
 #include "framework/base/error.h"
 #include "framework/scene/mesh.h"
@@ -17,49 +16,50 @@ using scene::Bounds;
 namespace {
 
 constexpr std::size_t kMaxTriangles = std::size_t(1) << 20;
-/// Between two of these moments of the exposure a corner strays from its way by less than the way itself.
-constexpr int kMoments = 17;
 
 float bits(std::uint32_t value) {
     return std::bit_cast<float>(value);
 }
 
-std::array<dvec3, 3> corners_of(const scene::Mesh& mesh, std::size_t triangle) {
-    const auto& corner = mesh.triangles[triangle];
-    return {mesh.vertices[corner[0]].position, mesh.vertices[corner[1]].position,
-            mesh.vertices[corner[2]].position};
+/// Some room for single precision.
+Bounds with_room(const Bounds& bounds) {
+    return {bounds.low - 1e-5 * (1.0 + glm::abs(bounds.low)),
+            bounds.high + 1e-5 * (1.0 + glm::abs(bounds.high))};
 }
 
-/// All that the corner passes, and some room for single precision.
-void add_way(Bounds& bounds, const std::vector<scene::SceneState>& states, std::size_t object,
-             const dvec3& corner) {
-    dvec3 before(0);
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        const dvec3 at(states[i].world_from_object[object] * dvec4(corner, 1));
-        const dvec3 room = dvec3(1e-5) * (1.0 + glm::abs(at)) + (i > 0 ? glm::abs(at - before) : dvec3(0));
-        bounds.add(at - room);
-        bounds.add(at + room);
-        before = at;
+GpuNode gpu_node(const Bounds& bounds, std::uint32_t skip, std::uint32_t items) {
+    return {with(bounds.low, bits(skip)), with(bounds.high, bits(items))};
+}
+
+/// The mesh's nodes and triangles behind those that are there.
+GpuObject add_mesh(GpuScene& result, const scene::MeshTree& tree) {
+    GpuObject object;
+    object.first_node = std::uint32_t(result.nodes.size());
+    object.node_count = std::uint32_t(tree.bvh.nodes.size());
+    object.first_triangle = std::uint32_t(result.triangles.size());
+    for (const scene::BvhNode& node : tree.bvh.nodes)
+        result.nodes.push_back(gpu_node(with_room(node.bounds), node.skip, node.first << 3 | node.count));
+    for (std::size_t i = 0; i < tree.bvh.items.size(); ++i) {
+        const scene::Sides& sides = tree.sides[i];
+        result.triangles.push_back(
+            {with(sides.corner, bits(tree.bvh.items[i])), with(sides.to_second), with(sides.to_third)});
     }
+    return object;
 }
 
-GpuTriangle triangle_of(const scene::ShadingGrids::Grid& grid, const scene::SceneState& reference,
-                        std::size_t object, const std::array<dvec3, 3>& corners, double opacity,
-                        bool casts_shadow) {
-    GpuTriangle triangle;
-    triangle.corner = with(corners[0], bits(std::uint32_t(object)));
-    triangle.to_second = with(corners[1] - corners[0], bits(grid.start));
-    triangle.to_third = with(corners[2] - corners[0], float(opacity));
-    const glm::dmat4 view_from_object =
-        reference.camera.camera_from_world * reference.world_from_object[object];
-    for (std::size_t i = 0; i < 3; ++i)
-        triangle.view[i] = with(dvec3(view_from_object * dvec4(corners[i], 1)));
-    triangle.view[0].w = casts_shadow ? float(opacity) : 0;
+GpuGrid gpu_grid(const scene::ShadingGrids::Grid& grid, const glm::dmat4& view_from_object,
+                 const scene::Mesh& mesh, std::size_t triangle) {
+    GpuGrid result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const dvec3& corner = mesh.vertices[mesh.triangles[triangle][i]].position;
+        result.view[i] = with(dvec3(view_from_object * dvec4(corner, 1)));
+    }
+    result.view[0].w = bits(grid.start);
     const glm::dmat2& cells = grid.cells_from_px;
-    triangle.cells_from_px = vec4(cells[0][0], cells[0][1], cells[1][0], cells[1][1]);
-    triangle.grid = vec4(float(grid.low.x), float(grid.low.y), bits(std::uint32_t(grid.size.x)),
-                         bits(std::uint32_t(grid.size.y)));
-    return triangle;
+    result.cells_from_px = vec4(cells[0][0], cells[0][1], cells[1][0], cells[1][1]);
+    result.grid = vec4(float(grid.low.x), float(grid.low.y), bits(std::uint32_t(grid.size.x)),
+                       bits(std::uint32_t(grid.size.y)));
+    return result;
 }
 
 }  // namespace
@@ -67,48 +67,82 @@ GpuTriangle triangle_of(const scene::ShadingGrids::Grid& grid, const scene::Scen
 std::vector<GpuNode> gpu_nodes(const scene::Bvh& bvh) {
     std::vector<GpuNode> nodes;
     for (const scene::BvhNode& node : bvh.nodes)
-        nodes.push_back({with(node.bounds.low, bits(node.skip)),
-                         with(node.bounds.high, bits(node.first << 3 | node.count))});
+        nodes.push_back(gpu_node(node.bounds, node.skip, node.first << 3 | node.count));
     return nodes;
 }
 
-void check_triangle_count(const scene::Scene& scene, const scene::ShadingGrids& grids) {
-    if (grids.grids().size() <= kMaxTriangles) return;
-    throw Error(ErrorKind::usage,
-                fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
-                            scene.path.string(), grids.grids().size(), kMaxTriangles));
+std::vector<std::array<std::uint32_t, 2>> gpu_sources(const scene::Scene& scene) {
+    std::vector<std::array<std::uint32_t, 2>> sources;
+    for (std::uint32_t object = 0; object < scene.objects.size(); ++object)
+        if (const int mesh = scene.objects[object].shape.mesh; mesh >= 0)
+            for (std::uint32_t i = 0; i < scene.meshes[std::size_t(mesh)].triangles.size(); ++i)
+                sources.push_back({object, i});
+    return sources;
 }
 
-GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame) {
+void check_triangle_count(const scene::Scene& scene) {
+    std::size_t count = 0;
+    for (const scene::Object& object : scene.objects)
+        if (object.shape.mesh >= 0) count += scene.meshes[std::size_t(object.shape.mesh)].triangles.size();
+    if (count <= kMaxTriangles) return;
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
+                            scene.path.string(), count, kMaxTriangles));
+}
+
+GpuScene make_gpu_scene(const scene::SceneRenderer& renderer) {
     const scene::Scene& scene = renderer.scene();
-    check_triangle_count(scene, grids);
-    const scene::Exposure exposure = exposure_of(scene.camera, frame);
-    std::vector<scene::SceneState> states;
-    for (int i = 0; i < kMoments; ++i)
-        states.push_back(
-            state_at(scene, frame, exposure.first + (exposure.last - exposure.first) * i / (kMoments - 1)));
-    std::vector<Bounds> bounds;
-    std::vector<GpuTriangle> triangles;
-    std::vector<std::array<std::uint32_t, 2>> sources;
-    for (std::size_t object = 0; object < scene.objects.size(); ++object) {
-        const int index = scene.objects[object].shape.mesh;
-        if (index < 0) continue;
-        const scene::Mesh& mesh = scene.meshes[std::size_t(index)];
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            const std::array<dvec3, 3> corners = corners_of(mesh, i);
-            triangles.push_back(triangle_of(grids.grids()[triangles.size()], grids.reference(), object,
-                                            corners, scene.material_of(int(object)).opacity,
-                                            scene.objects[object].casts_shadow));
-            sources.push_back({std::uint32_t(object), std::uint32_t(i)});
-            Bounds& own = bounds.emplace_back();
-            for (const dvec3& corner : corners) add_way(own, states, object, corner);
-        }
+    check_triangle_count(scene);
+    GpuScene result;
+    std::vector<GpuObject> of_mesh;
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i)
+        of_mesh.push_back(add_mesh(result, renderer.geometry().mesh(i)));
+    std::uint32_t surfaces = 0;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const scene::Object& from = scene.objects[i];
+        GpuObject& object = result.objects.emplace_back();
+        if (from.shape.mesh < 0) continue;
+        object = of_mesh[std::size_t(from.shape.mesh)];
+        object.first_surface = surfaces;
+        object.opacity = float(scene.material_of(int(i)).opacity);
+        object.shadow_opacity = from.casts_shadow ? object.opacity : 0;
+        surfaces += std::uint32_t(scene.meshes[std::size_t(from.shape.mesh)].triangles.size());
     }
-    const scene::Bvh bvh = scene::build_bvh(bounds, kLeafSize);
-    GpuScene result{gpu_nodes(bvh), {}, {}};
-    for (const std::uint32_t item : bvh.items) {
-        result.triangles.push_back(triangles[item]);
-        result.sources.push_back(sources[item]);
+    return result;
+}
+
+std::vector<GpuNode> make_top(const scene::SceneRenderer& renderer,
+                              const std::vector<scene::World>& moments) {
+    const scene::Scene& scene = renderer.scene();
+    std::vector<Bounds> bounds;
+    std::vector<std::uint32_t> objects;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        const scene::Shape& shape = scene.objects[i].shape;
+        if (shape.mesh < 0 || scene.meshes[std::size_t(shape.mesh)].triangles.empty()) continue;
+        const Bounds own = scene::bounds_of(shape, renderer.geometry().mesh_of(shape));
+        Bounds all;
+        for (const scene::World& world : moments)
+            all.add(scene::transformed(own, world.state().world_from_object[i]));
+        bounds.push_back(with_room(all));
+        objects.push_back(std::uint32_t(i));
+    }
+    const scene::Bvh bvh = scene::build_bvh(bounds, 1);
+    std::vector<GpuNode> nodes;
+    for (const scene::BvhNode& node : bvh.nodes) {
+        const std::uint32_t items = node.count > 0 ? objects[bvh.items[node.first]] << 3 | 1u : 0u;
+        nodes.push_back(gpu_node(node.bounds, node.skip, items));
+    }
+    return nodes;
+}
+
+std::vector<GpuGrid> make_gpu_grids(const scene::Scene& scene, const scene::ShadingGrids& grids) {
+    std::vector<GpuGrid> result;
+    const scene::SceneState& reference = grids.reference();
+    for (const auto& [object, triangle] : gpu_sources(scene)) {
+        const glm::dmat4 view_from_object =
+            reference.camera.camera_from_world * reference.world_from_object[object];
+        const scene::Mesh& mesh = scene.meshes[std::size_t(scene.objects[object].shape.mesh)];
+        result.push_back(gpu_grid(grids.grids()[result.size()], view_from_object, mesh, triangle));
     }
     return result;
 }

@@ -1,4 +1,4 @@
-// A scene's triangles over an exposure as trace.comp reads them; for the sources of this folder.
+// A scene's triangles as rays.glsl reads them; for the sources of this folder.
 #pragma once
 
 #include <array>
@@ -25,27 +25,50 @@ struct GpuTriangle {
     glm::vec4 corner{0};
     glm::vec4 to_second{0};
     glm::vec4 to_third{0};
+};
+
+struct GpuObject {
+    std::uint32_t first_node = 0;
+    std::uint32_t node_count = 0;
+    std::uint32_t first_triangle = 0;
+    std::uint32_t first_surface = 0;
+    float opacity = 1;
+    float shadow_opacity = 1;
+    float unused[2] = {};
+};
+
+/// Where the shading samples of a triangle lie.
+struct GpuGrid {
     std::array<glm::vec4, 3> view{};
     glm::vec4 cells_from_px{0};
     glm::vec4 grid{0};
 };
 
+/// A hierarchy for each mesh, in its own space. It is the same at all times.
 struct GpuScene {
     std::vector<GpuNode> nodes;
     std::vector<GpuTriangle> triangles;  ///< as the leaves order them
-    /// The object of each, and its number among the object's triangles.
-    std::vector<std::array<std::uint32_t, 2>> sources;
+    std::vector<GpuObject> objects;
 };
 
 /// The items of a leaf have three bits of their word in bvh.glsl, their index 29.
 inline constexpr int kLeafSize = 4;
 std::vector<GpuNode> gpu_nodes(const scene::Bvh& bvh);
 
-/// Throws Error(ErrorKind::usage) for more than 2^20.
-void check_triangle_count(const scene::Scene& scene, const scene::ShadingGrids& grids);
+/// Throws Error(ErrorKind::usage) for more than 2^20 triangles of all objects.
+void check_triangle_count(const scene::Scene& scene);
 
-/// One hierarchy over all triangles, whose boxes hold them over the whole exposure of `frame`.
-GpuScene make_gpu_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame);
+/// Each triangle of each object: the object, and its number there.
+std::vector<std::array<std::uint32_t, 2>> gpu_sources(const scene::Scene& scene);
+
+/// Throws as check_triangle_count() does.
+GpuScene make_gpu_scene(const scene::SceneRenderer& renderer);
+
+/// The hierarchy over the objects as they stand at these moments. A leaf's item is an object.
+std::vector<GpuNode> make_top(const scene::SceneRenderer& renderer, const std::vector<scene::World>& moments);
+
+/// In the order of gpu_sources().
+std::vector<GpuGrid> make_gpu_grids(const scene::Scene& scene, const scene::ShadingGrids& grids);
 
 /// object_from_world of all objects at all moments, three rows each.
 std::vector<glm::vec4> make_moments(const std::vector<scene::World>& moments);

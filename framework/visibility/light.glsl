@@ -1,10 +1,4 @@
 // Light at a point, in the words of world_lighting.cpp. What includes this has light_through().
-struct Material {
-    vec4 albedo;    // w: roughness
-    vec4 albedo_2;  // w: specular
-    vec4 emission;
-    vec4 checker_cells;  // xy
-};
 struct Light {
     vec4 position;   // m; w: kind
     vec4 direction;  // w: points of a grid a side that shadows are sought from; 0: no shadows
@@ -14,7 +8,6 @@ struct Light {
     vec4 axis;       // of the pattern; w: its amplitude
 };
 
-layout(std430, binding = 4) readonly buffer Materials { Material materials[]; };
 layout(std430, binding = 5) readonly buffer Lights { Light lights[]; };
 
 const float kPi = 3.14159265358979;
@@ -27,18 +20,12 @@ struct Point {
     vec3 position;
     vec3 normal;            // for shading
     vec3 geometric_normal;  // both of unit length, on the side that is seen
-    vec3 albedo;
-    uint material;
+    Finish finish;
     uint seed;              // of its random rays
 };
 
 // The share of light that crosses what stands on a ray before `high`.
 float light_through(vec3 origin, vec3 direction, float high);
-
-vec3 checked_albedo(Material material, vec2 uv) {
-    ivec2 square = ivec2(floor(uv * material.checker_cells.xy));
-    return ((square.x + square.y) & 1) != 0 ? material.albedo_2.rgb : material.albedo.rgb;
-}
 
 vec3 off_surface(Point point) {
     vec3 size = abs(point.position);
@@ -102,22 +89,22 @@ float pattern_at(Light light, vec3 position) {
 }
 
 // GGX with the height-correlated masking of Heitz 2014 and Schlick's Fresnel; without the light's cosine.
-float highlight(Material material, vec3 normal, vec3 to_light, vec3 to_eye) {
-    float specular = material.albedo_2.w, n_l = dot(normal, to_light), n_v = dot(normal, to_eye);
-    if (specular <= 0.0 || n_l <= 0.0 || n_v <= 0.0) return 0.0;
+vec3 highlight(Finish finish, vec3 normal, vec3 to_light, vec3 to_eye) {
+    float n_l = dot(normal, to_light), n_v = dot(normal, to_eye);
+    if (finish.reflectance == vec3(0.0) || n_l <= 0.0 || n_v <= 0.0) return vec3(0.0);
     vec3 half_way = normalize(to_light + to_eye);
-    float alpha = material.albedo.w * material.albedo.w, a2 = alpha * alpha;
+    float alpha = finish.roughness * finish.roughness, a2 = alpha * alpha;
     float n_h = clamp(dot(normal, half_way), 0.0, 1.0);
     // As n_h * n_h * (a2 - 1) + 1, whose digits cancel where the lobe is narrow.
     vec3 off_half = cross(normal, half_way);
     float base = n_h * n_h * a2 + dot(off_half, off_half);
     float masking = 0.5 / (n_l * sqrt(n_v * n_v * (1.0 - a2) + a2) + n_v * sqrt(n_l * n_l * (1.0 - a2) + a2));
     float grazing = 1.0 - clamp(dot(half_way, to_light), 0.0, 1.0), squared = grazing * grazing;
-    return a2 / (kPi * base * base) * masking * (specular + (1.0 - specular) * squared * squared * grazing);
+    return a2 / (kPi * base * base) * masking * (finish.reflectance + (1.0 - finish.reflectance) * squared * squared * grazing);
 }
 
 // Adds one light to the irradiance over pi and to what is reflected.
-void add_light(Light light, Material material, Point point, vec3 to_eye, inout vec3 irradiance, inout vec3 reflected) {
+void add_light(Light light, Point point, vec3 to_eye, inout vec3 irradiance, inout vec3 reflected) {
     bool is_far = light.position.w == kDirectional, is_area = light.position.w > kDirectional;
     vec3 way = is_far ? -light.direction.xyz : light.position.xyz - point.position;
     float distance2 = dot(way, way);
@@ -141,7 +128,7 @@ void add_light(Light light, Material material, Point point, vec3 to_eye, inout v
         highlighted *= seen;
     }
     irradiance += light.intensity.rgb * (received / kPi);
-    if (highlighted > 0.0) reflected += light.intensity.rgb * (highlighted * highlight(material, point.normal, toward, to_eye));
+    if (highlighted > 0.0) reflected += light.intensity.rgb * (highlighted * highlight(point.finish, point.normal, toward, to_eye));
 }
 
 // Point `index` of `count` as scene::shifted_hammersley() has it.
@@ -181,10 +168,9 @@ float visible_ambient(Point point, uint rays) {
 
 // Light from `count` lights, beginning with `first`, and from the ambient light, whose rays are ambient.w.
 vec3 light_at(Point point, vec3 eye, vec4 ambient, uint first, uint count) {
-    Material material = materials[point.material];
     vec3 to_eye = normalize(eye - point.position);
-    vec3 irradiance = ambient.rgb, reflected = vec3(0.0);
+    vec3 irradiance = point.finish.ambient * ambient.rgb, reflected = vec3(0.0);
     if (ambient.w > 0.0 && ambient.rgb != vec3(0.0)) irradiance *= visible_ambient(point, uint(ambient.w));
-    for (uint i = first; i < first + count; ++i) add_light(lights[i], material, point, to_eye, irradiance, reflected);
-    return point.albedo * irradiance + reflected + material.emission.rgb;
+    for (uint i = first; i < first + count; ++i) add_light(lights[i], point, to_eye, irradiance, reflected);
+    return point.finish.albedo * irradiance + reflected + point.finish.emission;
 }

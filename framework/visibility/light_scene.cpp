@@ -19,7 +19,6 @@ struct Placed {
     const scene::Mesh& mesh;
     dmat4 world_from_object;
     dmat3 normal_matrix;
-    int material;
 };
 
 /// The corners of a triangle in world space.
@@ -34,11 +33,11 @@ std::array<scene::Vertex, 3> corners_of(const Placed& placed, std::size_t triang
     return corners;
 }
 
-GpuSurface surface_of(const Placed& placed, const std::array<scene::Vertex, 3>& corners,
-                      const scene::ShadingGrids::Grid& grid) {
+GpuSurface surface_of(const std::array<scene::Vertex, 3>& corners, const scene::ShadingGrids::Grid& grid,
+                      std::size_t material) {
     const auto& [a, b, c] = corners;
     GpuSurface surface;
-    surface.corner = with(a.position, std::bit_cast<float>(std::uint32_t(placed.material)));
+    surface.corner = with(a.position, std::bit_cast<float>(std::uint32_t(material)));
     surface.to_second = with(b.position - a.position, a.uv.y);
     surface.to_third = with(c.position - a.position, b.uv.y);
     for (std::size_t i = 0; i < 3; ++i) surface.normals[i] = with(corners[i].normal, corners[i].uv.x);
@@ -57,11 +56,6 @@ scene::Bounds bounds_of(const std::array<scene::Vertex, 3>& corners) {
         bounds.add(corner.position + room);
     }
     return bounds;
-}
-
-GpuMaterial material_of(const scene::Material& material) {
-    return {with(material.albedo, material.roughness), with(material.albedo_2, material.specular),
-            with(material.emission), vec4(glm::vec2(material.checker_cells), 0, 0)};
 }
 
 GpuLight light_of(const scene::Light& light, const scene::LightState& now) {
@@ -85,13 +79,13 @@ void add_object(LightScene& result, std::vector<GpuBlocker>& blockers, std::vect
     if (object.shape.mesh < 0) return;
     const dmat4& world_from_object = grids.reference().world_from_object[index];
     const dmat3 normal_matrix = glm::transpose(glm::inverse(dmat3(world_from_object)));
-    const Placed placed{scene.meshes[std::size_t(object.shape.mesh)], world_from_object, normal_matrix,
-                        object.material};
+    const Placed placed{scene.meshes[std::size_t(object.shape.mesh)], world_from_object, normal_matrix};
     const double opacity = scene.material_of(int(index)).opacity;
     for (std::size_t i = 0; i < placed.mesh.triangles.size(); ++i) {
         const auto corners = corners_of(placed, i);
         const scene::ShadingGrids::Grid& grid = grids.grids()[result.surfaces.size()];
-        const GpuSurface& surface = result.surfaces.emplace_back(surface_of(placed, corners, grid));
+        const std::size_t material = scene.material_at(int(index), std::uint32_t(i));
+        const GpuSurface& surface = result.surfaces.emplace_back(surface_of(corners, grid, material));
         result.starts.push_back(grid.start);
         if (!object.casts_shadow || opacity <= 0) continue;
         blockers.push_back({vec4(glm::vec3(surface.corner), opacity), surface.to_second, surface.to_third});
@@ -101,12 +95,6 @@ void add_object(LightScene& result, std::vector<GpuBlocker>& blockers, std::vect
 
 }  // namespace
 
-std::vector<GpuMaterial> gpu_materials(const scene::Scene& scene) {
-    std::vector<GpuMaterial> materials;
-    for (const scene::Material& material : scene.materials) materials.push_back(material_of(material));
-    return materials;
-}
-
 std::vector<GpuLight> gpu_lights(const scene::Scene& scene, const scene::SceneState& now) {
     std::vector<GpuLight> lights;
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
@@ -114,9 +102,10 @@ std::vector<GpuLight> gpu_lights(const scene::Scene& scene, const scene::SceneSt
     return lights;
 }
 
-LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids) {
+LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
+                            std::size_t max_bytes) {
     const scene::Scene& scene = renderer.scene();
-    check_triangle_count(scene, grids);
+    check_triangle_count(scene);
     LightScene result;
     std::vector<GpuBlocker> blockers;
     std::vector<scene::Bounds> bounds;
@@ -125,7 +114,14 @@ LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::S
     const scene::Bvh bvh = scene::build_bvh(bounds, kLeafSize);
     result.nodes = gpu_nodes(bvh);
     for (const std::uint32_t item : bvh.items) result.blockers.push_back(blockers[item]);
-    result.materials = gpu_materials(scene);
+    result.materials = gpu_materials(scene, max_bytes);
+    const std::vector<std::array<std::uint32_t, 2>> sources = gpu_sources(scene);
+    result.tangents = gpu_tangents(scene, sources);
+    for (std::size_t i = 0; i < result.tangents.size(); ++i) {
+        vec4& tangent = result.tangents[i];
+        const dmat3 linear(grids.reference().world_from_object[sources[i / 3][0]]);
+        tangent = with(linear * dvec3(tangent), tangent.w);
+    }
     result.lights = gpu_lights(scene, grids.reference());
     return result;
 }

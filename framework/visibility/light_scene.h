@@ -10,6 +10,7 @@
 #include "framework/scene/scene_renderer.h"
 #include "framework/scene/shading_grid.h"
 #include "framework/visibility/gpu_scene.h"
+#include "framework/visibility/gpu_textures.h"
 
 namespace aftershade::visibility {
 
@@ -30,13 +31,6 @@ struct GpuSurface {
     glm::vec4 grid{0};
 };
 
-struct GpuMaterial {
-    glm::vec4 albedo{0};
-    glm::vec4 albedo_2{0};
-    glm::vec4 emission{0};
-    glm::vec4 checker_cells{0};
-};
-
 struct GpuLight {
     glm::vec4 position{0};
     glm::vec4 direction{0};
@@ -51,14 +45,15 @@ struct LightScene {
     std::vector<GpuBlocker> blockers;   ///< as the leaves order them
     std::vector<std::uint32_t> starts;  ///< as scene::ShadingGrids::grids()
     std::vector<GpuSurface> surfaces;   ///< the same
-    std::vector<GpuMaterial> materials;
+    GpuMaterials materials;
+    std::vector<glm::vec4> tangents;  ///< of the surfaces, as gpu_tangents() has them, in the world
     std::vector<GpuLight> lights;
 };
 
-std::vector<GpuMaterial> gpu_materials(const scene::Scene& scene);
 std::vector<GpuLight> gpu_lights(const scene::Scene& scene, const scene::SceneState& now);
 
-/// Throws Error(ErrorKind::usage) for more than 2^20 triangles.
-LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids);
+/// Throws Error(ErrorKind::usage) for more than 2^20 triangles, and for textures of more than `max_bytes`.
+LightScene make_light_scene(const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
+                            std::size_t max_bytes);
 
 }  // namespace aftershade::visibility

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "framework/base/parallel.h"
+#include "framework/visibility/gpu_scene.h"
 
 namespace aftershade::visibility {
 
@@ -20,19 +21,20 @@ void set_stops(GpuRay& ray, std::uint32_t seed, int sample, const scene::Visibil
 
 }  // namespace
 
-SampleSettings sample_settings(const scene::SceneRenderer& renderer, const GpuScene& scene,
-                               const scene::CameraState& reference, int samples) {
+SampleSettings sample_settings(const scene::SceneRenderer& renderer, const scene::CameraState& reference,
+                               int samples) {
     const scene::Scene& of = renderer.scene();
     SampleSettings settings;
     settings.size_px = {renderer.width_px(), renderer.height_px()};
     settings.px_per_tangent = float(renderer.pixels_per_tangent(reference));
-    settings.node_count = std::uint32_t(scene.nodes.size());
     settings.object_count = std::uint32_t(of.objects.size());
     settings.sample_count = std::uint32_t(samples);
     settings.transparent = of.has_transparency() ? 1 : 0;
     settings.light_count = std::uint32_t(of.lights.size());
     settings.ambient = with(of.ambient, double(of.ambient_rays));
     settings.background = with(of.background);
+    settings.camera_right = with(glm::dvec3(reference.world_from_camera[0]));
+    settings.camera_up = with(glm::dvec3(reference.world_from_camera[1]));
     return settings;
 }
 

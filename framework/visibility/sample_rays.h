@@ -7,7 +7,6 @@
 
 #include "framework/scene/scene_renderer.h"
 #include "framework/scene/visibility.h"
-#include "framework/visibility/gpu_scene.h"
 
 namespace aftershade::visibility {
 
@@ -20,7 +19,7 @@ struct GpuRay {
 struct SampleSettings {
     glm::vec2 size_px{0};
     float px_per_tangent = 0;
-    std::uint32_t node_count = 0;
+    std::uint32_t top_count = 0;
     std::uint32_t object_count = 0;
     std::uint32_t pixel_count = 0;
     std::uint32_t sample_index = 0;
@@ -30,11 +29,13 @@ struct SampleSettings {
     std::uint32_t unused[2] = {};
     glm::vec4 ambient{0};
     glm::vec4 background{0};
+    glm::vec4 camera_right{0};
+    glm::vec4 camera_up{0};
 };
 
-/// All but the pixels and the number of the sample.
-SampleSettings sample_settings(const scene::SceneRenderer& renderer, const GpuScene& scene,
-                               const scene::CameraState& reference, int samples);
+/// All but what RayBuffers::set_sample() sets.
+SampleSettings sample_settings(const scene::SceneRenderer& renderer, const scene::CameraState& reference,
+                               int samples);
 
 /// The rays of sample `sample` through the pixels of some rows. `moments` are those of the sample.
 std::vector<GpuRay> rays_of_band(const scene::SceneRenderer& renderer, int frame,

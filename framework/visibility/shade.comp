@@ -50,24 +50,35 @@ vec2 weights_at(Surface at, vec2 place) {
     return on_plane(at.corner.xyz, at.to_second.xyz, at.to_third.xyz, world_from_camera[3].xyz, direction).yz;
 }
 
-vec3 albedo_at(Surface at, Material material, vec2 on) {
+vec2 uv_at(Surface at, vec2 on) {
     vec3 weights = vec3(1.0 - on.x - on.y, on);
-    vec2 uv = vec2(dot(vec3(at.normals[0].w, at.normals[1].w, at.normals[2].w), weights), dot(vec3(at.to_second.w, at.to_third.w, at.grid.w), weights));
-    return checked_albedo(material, uv);
+    return vec2(dot(vec3(at.normals[0].w, at.normals[1].w, at.normals[2].w), weights), dot(vec3(at.to_second.w, at.to_third.w, at.grid.w), weights));
+}
+
+// Where a ray runs along the plane, its middle; as barycentric_on_plane() of the CPU.
+vec2 finite_weights(Surface at, vec2 place) {
+    vec2 on = weights_at(at, place);
+    return any(isnan(on)) || any(isinf(on)) ? vec2(1.0 / 3.0) : on;
+}
+
+// The sides of the cell whose corner is `corner`, in texture coordinates.
+mat2 uv_of_cell(Surface at, vec2 corner) {
+    return mat2(uv_at(at, finite_weights(at, corner + vec2(1.0, 0.5))) - uv_at(at, finite_weights(at, corner + vec2(0.0, 0.5))),
+                uv_at(at, finite_weights(at, corner + vec2(0.5, 1.0))) - uv_at(at, finite_weights(at, corner + vec2(0.5, 0.0))));
 }
 
 // Over the cell whose corner is `corner`; `middle` stands for a cell of which no place lies on the triangle.
-vec3 mean_albedo(Surface at, Material material, vec2 corner, vec2 middle) {
-    if (material.checker_cells.xy == vec2(0.0)) return material.albedo.rgb;
+vec3 mean_albedo(Surface at, Material material, vec2 corner, vec2 middle, mat2 uv_of_cell) {
+    mat2 uv_of_place = uv_of_cell / float(kAlbedoPoints);
     vec3 sum = vec3(0.0);
     float count = 0.0;
     for (int i = 0; i < kAlbedoPoints * kAlbedoPoints; ++i) {
         vec2 on = weights_at(at, corner + (vec2(float(i % kAlbedoPoints), float(i / kAlbedoPoints)) + 0.5) / float(kAlbedoPoints));
         if (!is_inside(on)) continue;
-        sum += albedo_at(at, material, on);
+        sum += albedo_at(material, uv_at(at, on), uv_of_place);
         count += 1.0;
     }
-    return count > 0.0 ? sum / count : albedo_at(at, material, middle);
+    return count > 0.0 ? sum / count : albedo_at(material, uv_at(at, middle), uv_of_place);
 }
 
 // The cell's centre as the pinhole camera sees it, drawn into the triangle.
@@ -76,18 +87,26 @@ Point point_of(uint id) {
     Surface at = surfaces[index];
     uint cell = id / 2u - starts[index], columns = floatBitsToUint(at.grid.z);
     vec2 corner = at.grid.xy + vec2(float(cell % columns), float(cell / columns));
-    vec2 on = weights_at(at, corner + 0.5);
-    if (any(isnan(on)) || any(isinf(on))) on = vec2(1.0 / 3.0);
+    vec2 on = finite_weights(at, corner + 0.5);
     vec3 weights = max(vec3(1.0 - on.x - on.y, on.x, on.y), vec3(0.0));
     weights /= weights.x + weights.y + weights.z;
+    Material material = materials[floatBitsToUint(at.corner.w)];
+    bool textured = has_maps(material);
+    vec2 uv = uv_at(at, weights.yz);
+    mat2 uv_of_own = textured ? uv_of_cell(at, corner) : mat2(0.0);
     Point point;
     point.position = at.corner.xyz + weights.y * at.to_second.xyz + weights.z * at.to_third.xyz;
     point.geometric_normal = normalize(cross(at.to_second.xyz, at.to_third.xyz)) * ((id & 1u) != 0u ? -1.0 : 1.0);
-    point.normal = normalize(mat3(at.normals[0].xyz, at.normals[1].xyz, at.normals[2].xyz) * weights);
-    if (dot(point.geometric_normal, point.normal) < 0.0) point.normal = -point.normal;
-    point.material = floatBitsToUint(at.corner.w);
+    vec3 smooth_normal = normalize(mat3(at.normals[0].xyz, at.normals[1].xyz, at.normals[2].xyz) * weights);
+    point.normal = smooth_normal;
+    if (material.normal_map.x != kNoMap) {
+        vec4 tangent = tangent_at(index, weights);
+        point.normal = mapped_normal(material, uv, uv_of_own, smooth_normal, tangent.xyz, tangent.w);
+    }
+    if (dot(point.geometric_normal, smooth_normal) < 0.0) point.normal = -point.normal;
     point.seed = pcg3d(uvec3(id, 0u, 0x2545f491u)).x;  // as scene::light_seed()
-    point.albedo = mean_albedo(at, materials[point.material], corner, weights.yz);
+    point.finish = finish_at(material, uv, uv_of_own);
+    if (textured || material.checker_cells.xy != vec2(0.0)) point.finish.albedo = mean_albedo(at, material, corner, weights.yz, uv_of_own);
     return point;
 }
 

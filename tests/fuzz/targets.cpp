@@ -43,6 +43,7 @@
 #include "framework/render/history_file.h"
 #include "framework/run/journal.h"
 #include "framework/scattering/scattering_profile.h"
+#include "framework/scene/gltf_model.h"
 #include "framework/scene/mesh.h"
 #include "framework/scene/scene_reader.h"
 #include "framework/serve/http_message.h"
@@ -158,7 +159,7 @@ void cube(std::string_view bytes) {
 
 void gltf(std::string_view bytes) {
     const fs::path file = file_of(bytes.starts_with("glTF") ? "in.glb" : "in.gltf", bytes);
-    refused_or_read([&] { scene::read_gltf(file); });
+    refused_or_read([&] { scene::read_gltf_model(file); });
 }
 
 /// Three bytes say the size and the compression, the rest are the pixels' bits, halves and floats in turn.

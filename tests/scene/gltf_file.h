@@ -79,10 +79,12 @@ public:
         const int component = sizeof(T) == 1 ? kUnsignedByte : sizeof(T) == 2 ? kUnsignedShort : kUnsignedInt;
         return accessor(view(bytes_of(values)), component, values.size(), "SCALAR");
     }
-    void primitive(const std::string& attributes, int indices = -1, int mode = kTriangles) {
+    void primitive(const std::string& attributes, int indices = -1, int mode = kTriangles,
+                   int material = -1) {
         primitives_ +=
-            fmt::format(R"({}{{"attributes": {{{}}}, "mode": {}{}}})", primitives_.empty() ? "" : ", ",
-                        attributes, mode, indices < 0 ? "" : fmt::format(R"(, "indices": {})", indices));
+            fmt::format(R"({}{{"attributes": {{{}}}, "mode": {}{}{}}})", primitives_.empty() ? "" : ", ",
+                        attributes, mode, indices < 0 ? "" : fmt::format(R"(, "indices": {})", indices),
+                        material < 0 ? "" : fmt::format(R"(, "material": {})", material));
     }
 
     std::string json(const std::string& uri) const {

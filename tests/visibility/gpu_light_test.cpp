@@ -64,6 +64,25 @@ TEST_P(LightOn, LightsShippedScenesAsTheCpuDoesButAtEdgesOfShadowsAndChecks) {
     }
 }
 
+TEST_P(LightOn, LightsTexturesAndNormalMapsAsTheCpuDoes) {
+    // The highlights of the urn's gold are narrow, and the last digits of the normal map move them.
+    const Pictures both = pictures(context(), scene::shipped_scene("urn"), 4, 1);
+    EXPECT_LT(other_pixels(both), 0.004);
+}
+
+TEST_P(LightOn, RefusesTexturesThatNoBufferHolds) {
+    try {
+        pictures(context(), scene::shipped_scene("urn"), 4, 1, 4096);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        const std::string text = error.what();
+        EXPECT_NE(text.find("urn/scene.json: textures of "), std::string::npos) << text;
+        EXPECT_NE(text.find("the limit of visibility by GL is 4096; scale them down"), std::string::npos)
+            << text;
+    }
+}
+
 /// A floor, a stretched box, a ball and a pane, under one light.
 scene::Scene room_under(const std::string& light) {
     return scene::scene_of(R"({ "aftershade": 1, "frames": "1", "size": [160, 90],

@@ -42,7 +42,7 @@ double other_pixels(const scene::LitSamples& a, const scene::LitSamples& b) {
 TEST_P(SamplesOn, AreLitAsTheCpuLightsThemAtTheirOwnMoments) {
     for (const auto visibility : {scene::Visibility::supersampled, scene::Visibility::accumulation})
         for (const auto& [id, frame] :
-             {std::pair("bats", 6), {"toys", 4}, {"panes", 4}, {"light_flash", 4}}) {
+             {std::pair("bats", 6), {"toys", 4}, {"panes", 4}, {"light_flash", 4}, {"urn", 4}}) {
             scene::Scene triangles = scene::triangulated(scene::shipped_scene(id));
             triangles.ambient_rays = 3;
             scene::VisibilitySettings settings;

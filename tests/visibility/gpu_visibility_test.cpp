@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <set>
 #include <unordered_set>
 #include <vector>
 
 #include "framework/scene/triangulate.h"
 #include "framework/visibility/gpu_cache.h"
+#include "framework/visibility/gpu_scene.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/scene/scene_text.h"
 
@@ -47,6 +49,51 @@ TEST_P(VisibilityOn, MeetsWhatTheCpuMeetsButAtEdges) {
         for (std::size_t i = 0; i < found.on_cpu.size(); ++i) other += found.on_cpu[i] != found.on_gpu[i];
         EXPECT_LT(double(other) / double(found.on_cpu.size()), 0.002) << id;
     }
+}
+
+/// Whether the leaf of an object in the upper hierarchy holds a point.
+bool holds(const std::vector<GpuNode>& top, std::uint32_t object, const glm::vec3& point) {
+    for (const GpuNode& node : top) {
+        const auto items = std::bit_cast<std::uint32_t>(node.high_items.w);
+        if (items != (object << 3 | 1u)) continue;
+        return glm::all(glm::lessThanEqual(glm::vec3(node.low_skip), point)) &&
+               glm::all(glm::lessThanEqual(point, glm::vec3(node.high_items)));
+    }
+    return false;
+}
+
+TEST(UpperHierarchy, HoldsEachObjectAtEveryMomentOfASampleAndNoMore) {
+    const scene::Scene triangles = scene::triangulated(scene::shipped_scene("toys"));
+    const scene::SceneRenderer renderer(triangles, kWidth_px, kHeight_px, 2);
+    scene::VisibilitySettings settings;
+    settings.samples = 8;
+    const auto sources = gpu_sources(triangles);
+    double lengths_m[2] = {};
+    for (const int sample : {0, 7}) {
+        const auto moments = renderer.moments_of(4, truth_of(settings), sample);
+        ASSERT_GT(moments.size(), 1u);
+        const std::vector<GpuNode> top = make_top(renderer, moments);
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(top.front().low_skip.w), top.size());
+        for (const auto& [object, triangle] : sources)
+            for (const scene::World& world : moments) {
+                const scene::Mesh& mesh = triangles.meshes[std::size_t(triangles.objects[object].shape.mesh)];
+                const glm::dvec3& corner = mesh.vertices[mesh.triangles[triangle][0]].position;
+                const glm::dvec3 at(world.state().world_from_object[object] * glm::dvec4(corner, 1));
+                ASSERT_TRUE(holds(top, object, glm::vec3(at))) << object << " " << triangle;
+            }
+        // One moment alone needs no more room than all of them.
+        const std::vector<GpuNode> one = make_top(renderer, {moments.front()});
+        EXPECT_EQ(one.size(), top.size());
+        const auto diagonal = [](const std::vector<GpuNode>& nodes) {
+            double sum = 0;
+            for (const GpuNode& node : nodes)
+                sum += double(glm::length(glm::vec3(node.high_items) - glm::vec3(node.low_skip)));
+            return sum;
+        };
+        EXPECT_LT(diagonal(one), diagonal(top));
+        lengths_m[sample == 0 ? 0 : 1] = diagonal(top);
+    }
+    EXPECT_NE(lengths_m[0], lengths_m[1]) << "each sample has a hierarchy of its own";
 }
 
 TEST_P(VisibilityOn, CountsTheShadingsThatASetCounts) {

@@ -1,0 +1,89 @@
+// Pictures on surfaces: the twin of scene::SurfaceTexture in single precision.
+layout(std430, binding = 8) readonly buffer Textures { uint textures[]; };  // each as gpu_textures.h has it
+
+const uint kNoMap = 0xffffffffu;
+const uint kRepeat = 0u, kMirror = 1u;    // 2: clamp
+const uint kSrgb = 1u, kNormal = 2u;      // 0: linear
+const float kMostTaps = 8.0;
+
+struct Map {
+    uint first;  // texel of the finest level
+    ivec2 size;
+    int levels;
+    uint kinds;  // how u repeats, v by 4; what texels stand for by 16; 64: nearest
+};
+
+vec3 texel_value(uint word, uint values) {
+    vec3 stored = unpackUnorm4x8(word).rgb;
+    if (values == kSrgb) {
+        bvec3 straight = lessThanEqual(stored, vec3(12.92 * 0.0031308));
+        return mix(pow((stored + 0.055) / 1.055, vec3(2.4)), stored / 12.92, straight);
+    }
+    if (values != kNormal) return stored;
+    uvec3 bytes = uvec3(word, word >> 8, word >> 16) & 255u;
+    return mix(stored * 2.0 - 1.0, vec3(0.0), equal((bytes + 1u) >> 1, uvec3(64u)));  // of 127 and 128
+}
+
+float folded(uint wrap, float u) {
+    if (wrap == kRepeat) return u - floor(u);
+    if (wrap != kMirror) return clamp(u, 0.0, 1.0);
+    float turn = u - 2.0 * floor(0.5 * u);
+    return turn > 1.0 ? 2.0 - turn : turn;
+}
+
+vec2 folded_uv(Map map, vec2 uv) {
+    return vec2(folded(map.kinds & 3u, uv.x), folded((map.kinds >> 2) & 3u, uv.y));
+}
+
+int inside(uint wrap, int at, int side) {
+    if (wrap != kRepeat) return clamp(at, 0, side - 1);
+    return at < 0 ? side - 1 : at >= side ? 0 : at;
+}
+
+vec3 texel(Map map, uint first, ivec2 size, ivec2 at) {
+    int row = inside((map.kinds >> 2) & 3u, at.y, size.y), column = inside(map.kinds & 3u, at.x, size.x);
+    return texel_value(textures[first + uint(row * size.x + column)], (map.kinds >> 4) & 3u);
+}
+
+vec3 blended(Map map, int level, vec2 uv) {
+    ivec2 size = map.size;
+    uint first = map.first;
+    for (int i = 0; i < level; ++i) {
+        first += uint(size.x * size.y);
+        size = max(size / 2, ivec2(1));
+    }
+    vec2 at = folded_uv(map, uv) * vec2(size) - 0.5, part = at - floor(at);
+    ivec2 low = ivec2(floor(at));
+    vec3 above = mix(texel(map, first, size, low), texel(map, first, size, low + ivec2(1, 0)), part.x);
+    vec3 below = mix(texel(map, first, size, low + ivec2(0, 1)), texel(map, first, size, low + ivec2(1, 1)), part.x);
+    return mix(above, below, part.y);
+}
+
+// The mean over a pixel whose sides in texture coordinates are the columns of `uv_of_pixel`.
+vec3 map_at(uint index, vec2 uv, mat2 uv_of_pixel) {
+    ivec2 size = ivec2(textures[index], textures[index + 1u]);
+    Map map = Map(index + 4u, size, int(textures[index + 2u]), textures[index + 3u]);
+    mat2 sides = mat2(uv_of_pixel[0] * vec2(size), uv_of_pixel[1] * vec2(size));
+    float a = sides[0].x * sides[0].x + sides[1].x * sides[1].x, b = sides[0].x * sides[0].y + sides[1].x * sides[1].y;
+    float c = sides[0].y * sides[0].y + sides[1].y * sides[1].y, middle = 0.5 * (a - c), apart = sqrt(middle * middle + b * b);
+    float longer = sqrt(0.5 * (a + c) + apart), shorter = longer > 0.0 ? abs(determinant(sides)) / longer : 0.0;
+    vec2 along = middle >= 0.0 ? vec2(middle + apart, b) : vec2(b, apart - middle);
+    along = length(along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
+    float ratio = longer / max(shorter, 1.0) - 0.01;
+    int taps = ratio > 1.0 ? int(ceil(min(ratio, kMostTaps))) : 1;
+    float across = max(longer / float(taps), shorter);
+    float level = across > 1.0 ? min(log2(across), float(map.levels - 1)) : 0.0;
+    int fine = int(level);
+    float part = level - float(fine);
+    vec3 sum = vec3(0.0);
+    for (int tap = 0; tap < taps; ++tap) {
+        vec2 place = uv + ((float(tap) + 0.5) / float(taps) - 0.5) * longer * along / vec2(size);
+        if (level <= 0.0 && (map.kinds & 64u) != 0u) {
+            sum += texel(map, map.first, size, ivec2(folded_uv(map, place) * vec2(size)));
+            continue;
+        }
+        vec3 value = blended(map, fine, place);
+        sum += part > 0.0 ? mix(value, blended(map, fine + 1, place), part) : value;
+    }
+    return sum / float(taps);
+}

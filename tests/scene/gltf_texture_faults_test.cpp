@@ -1,0 +1,95 @@
+// Faults of glTF files' materials: each names the file, the thing and what to do.
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "framework/base/error.h"
+#include "tests/scene/textured_file.h"
+
+namespace aftershade::scene {
+namespace {
+
+using namespace test;
+
+std::string texture_fault_of(const std::string& model) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "model");
+    write_text(folder / "outside.png", png_of({1, 2, 3}));
+    write_text(folder / "model/empty.png", "");
+    write_text(folder / "model/picture.webp", "RIFF    WEBP");
+    write_text(folder / "model/model.gltf", model);
+    try {
+        read_gltf_model(folder / "model/model.gltf");
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        const std::string text = error.what();
+        EXPECT_TRUE(text.starts_with((folder / "model/model.gltf").string() + ": ")) << text;
+        return text;
+    }
+    return "none";
+}
+
+struct TextureFault {
+    const char* material;
+    const char* images;  ///< "" for a good one
+    const char* error;
+};
+
+const TextureFault kTextureFaults[] = {
+    {R"("normalTexture": {"index": 7})", "",
+     "material 0 'paint': normalTexture is texture 7, the file has 1"},
+    {R"("normalTexture": {"index": 0})", R"({"uri": "missing.png"})", "image 0 'missing.png': "},
+    {R"("normalTexture": {"index": 0})", R"({"uri": "../outside.png"})", "leads out of the folder"},
+    {R"("normalTexture": {"index": 0})", R"({"uri": "picture.webp"})",
+     "image 0: neither PNG nor JPEG; save it as one of these"},
+    {R"("normalTexture": {"index": 0})", R"({"uri": "data:image/png;base64,iVBORw0KGgoAAAA="})",
+     "image 0: not a PNG file that can be read"},
+    {R"("normalTexture": {"index": 0})", R"({"bufferView": 99, "mimeType": "image/png"})", "bufferView"},
+    {R"("pbrMetallicRoughness": {"metallicFactor": 1.5})", "",
+     "material 0 'paint': metallicFactor is 1.5, not 0 to 1"},
+    {R"("emissiveFactor": [1, -1, 1])", "", "emissiveFactor is -1, not 0 to 1"},
+};
+
+TEST(GltfTextureFaults, AreToldWithTheirPlace) {
+    for (const TextureFault& fault : kTextureFaults) {
+        Textured textured{.images = fault.images, .pictures = {png_of({1, 2, 3})}};
+        const std::string text = texture_fault_of(textured_quad(fault.material, textured).text());
+        EXPECT_NE(text.find(fault.error), std::string::npos) << text << "\n  against " << fault.error;
+    }
+}
+
+TEST(GltfTextureFaults, OfATextureWithoutAnImageOrASamplerAreToldToo) {
+    File file = textured_quad(kBumpy, {.pictures = {png_of({1, 2, 3})}});
+    const std::string good = file.more;
+    const auto with = [&](const std::string& textures) {
+        file.more = good;
+        const std::string old = R"([{"source": 0, "sampler": 0}])";
+        file.more.replace(file.more.find(old), old.size(), textures);
+        return texture_fault_of(file.text());
+    };
+    EXPECT_NE(with(R"([{"sampler": 0}])").find("texture 0 has no image of PNG or JPEG"), std::string::npos);
+    EXPECT_NE(with(R"([{"source": 4}])").find("texture 0 is of image 4, the file has 1"), std::string::npos);
+    EXPECT_NE(with(R"([{"source": 0, "sampler": 3}])").find("has sampler 3, the file has 1"),
+              std::string::npos);
+}
+
+TEST(GltfTextureFaults, WhatIsNotDrawnIsAWarning) {
+    const TemporaryFolder folder;
+    const std::string material =
+        R"("alphaMode": "BLEND", "emissiveTexture": {"index": 0, "texCoord": 1},
+           "normalTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}})";
+    write_text(folder / "model.gltf", textured_quad(material, {.pictures = {png_of({1, 2, 3})}}).text());
+    const GltfModel model = read_gltf_model(folder / "model.gltf");
+    EXPECT_FALSE(model.materials.at(0).maps.emission);
+    EXPECT_TRUE(model.materials.at(0).maps.normal);
+    std::string all;
+    for (const std::string& warning : model.warnings) all += warning + "\n";
+    for (const char* part : {"emissiveTexture has texture coordinates set 1 and is not drawn",
+                             "normalTexture: KHR_texture_transform is not applied",
+                             "alphaMode BLEND is not drawn: the surface is opaque"})
+        EXPECT_NE(all.find(part), std::string::npos) << all;
+}
+
+}  // namespace
+}  // namespace aftershade::scene
