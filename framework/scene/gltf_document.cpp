@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <string_view>
 
 namespace aftershade::scene {
@@ -129,11 +130,34 @@ tinygltf::Model load_gltf(const fs::path& path, bool keeps_images) {
     return model;
 }
 
+namespace {
+
+/// "a%20b" is "a b" (RFC 3986).
+std::string without_percents(const std::string& uri) {
+    std::string text;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        int value = 0;
+        const char *first = uri.data() + i + 1, *last = first + 2;
+        if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(first, last, value, 16).ptr == last) {
+            text += char(value);
+            i += 2;
+        } else {
+            text += uri[i];
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
 std::string gltf_file_fault(const fs::path& path, const std::string& uri) {
     std::string folder = folder_of(path), fault;
     std::vector<unsigned char> unused;
-    const std::string file = folder + "/" + uri;
-    return read_whole_file(&unused, &fault, file, &folder) ? file + " is empty" : fault;
+    const std::string file = folder + "/" + without_percents(uri);
+    const bool read = read_whole_file(&unused, &fault, file, &folder);
+    const std::string remedy = R"( (put it there, or give the object a "material" of the scene))";
+    if (read) return file + " is empty" + remedy;
+    return file_exists(file, nullptr) ? fault : fault + remedy;
 }
 
 }  // namespace aftershade::scene

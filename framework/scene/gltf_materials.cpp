@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr double kMaxScale = 1000;  // of a normal map
 constexpr std::size_t kMaxTexels = std::size_t(1) << 27;
 
 TextureWrap wrap_of(int mode) {
@@ -50,7 +51,9 @@ public:
         maps.normal = map("normalTexture", source.normalTexture, TexelValues::normal);
         maps.occlusion_strength = share("occlusionTexture.strength", source.occlusionTexture.strength);
         maps.normal_scale = source.normalTexture.scale;
-        if (!std::isfinite(maps.normal_scale)) fault("normalTexture.scale is not finite");
+        if (!(std::abs(maps.normal_scale) <= kMaxScale))
+            fault(fmt::format("normalTexture.scale is {}, not -{} to {}", maps.normal_scale, kMaxScale,
+                              kMaxScale));
         if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE")
             warn("alphaMode " + source.alphaMode + " is not drawn: the surface is opaque");
         return material;

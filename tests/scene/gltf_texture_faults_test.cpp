@@ -39,7 +39,10 @@ struct TextureFault {
 const TextureFault kTextureFaults[] = {
     {R"("normalTexture": {"index": 7})", "",
      "material 0 'paint': normalTexture is texture 7, the file has 1"},
-    {R"("normalTexture": {"index": 0})", R"({"uri": "missing.png"})", "image 0 'missing.png': "},
+    {R"("normalTexture": {"index": 0})", R"({"uri": "not%20there.png"})",
+     "/not there.png no such file (put it there, or give the object a \"material\" of the scene)"},
+    {R"("normalTexture": {"index": 0, "scale": 1e300})", "",
+     "normalTexture.scale is 1e+300, not -1000 to 1000"},
     {R"("normalTexture": {"index": 0})", R"({"uri": "../outside.png"})", "leads out of the folder"},
     {R"("normalTexture": {"index": 0})", R"({"uri": "picture.webp"})",
      "image 0: neither PNG nor JPEG; save it as one of these"},

@@ -1,5 +1,6 @@
 // Materials and textures of glTF files, in captures whose values have closed forms.
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -191,6 +192,24 @@ TEST(Tangents, OfACornerWithTwoMirroredHalvesAreTwo) {
     for (std::size_t i = 0; i < 2; ++i)
         for (const std::uint32_t vertex : mesh.triangles[i])
             EXPECT_EQ(mesh.tangents[vertex], i == 0 ? glm::dvec4(1, 0, 0, 1) : glm::dvec4(-1, 0, 0, -1));
+}
+
+TEST(Tangents, OfASurfaceOfRevolutionLieAlongItsCircles) {
+    const Mesh mesh = read_gltf_model(scenes_folder() / "meshes/urn.glb").mesh;
+    ASSERT_EQ(mesh.tangents.size(), mesh.vertices.size());
+    double worst = 0, worst_at_seam = 0;
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const Vertex& vertex = mesh.vertices[i];
+        // u grows to the right as seen from outside, which is from +z to +x.
+        const glm::dvec3 around = glm::normalize(glm::dvec3(vertex.position.z, 0, -vertex.position.x));
+        const double off_deg =
+            glm::degrees(std::acos(std::min(glm::dot(around, glm::dvec3(mesh.tangents[i])), 1.0)));
+        const bool at_seam = vertex.uv.x < 1e-6 || vertex.uv.x > 1 - 1e-6;
+        (at_seam ? worst_at_seam : worst) = std::max(at_seam ? worst_at_seam : worst, off_deg);
+        EXPECT_EQ(mesh.tangents[i].w, 1);
+    }
+    EXPECT_LT(worst, 0.001);
+    EXPECT_LT(worst_at_seam, 3.1) << "where the texture ends, the triangles of one side alone count";
 }
 
 TEST(GltfMaterials, OfMetalReflectTheirColourAndNothingElse) {
