@@ -43,7 +43,7 @@ void add_way(Bounds& bounds, const std::vector<scene::SceneState>& states, std::
     }
 }
 
-GpuTriangle triangle_of(const scene::ShadingGrids::Grid& grid, const scene::SceneState& reference,
+GpuTriangle triangle_of(const scene::TriangleGrid& grid, const scene::SceneState& reference,
                         std::size_t object, const std::array<dvec3, 3>& corners, double opacity,
                         bool casts_shadow) {
     GpuTriangle triangle;

@@ -35,7 +35,7 @@ std::array<scene::Vertex, 3> corners_of(const Placed& placed, std::size_t triang
 }
 
 GpuSurface surface_of(const Placed& placed, const std::array<scene::Vertex, 3>& corners,
-                      const scene::ShadingGrids::Grid& grid) {
+                      const scene::TriangleGrid& grid) {
     const auto& [a, b, c] = corners;
     GpuSurface surface;
     surface.corner = with(a.position, std::bit_cast<float>(std::uint32_t(placed.material)));
@@ -90,7 +90,7 @@ void add_object(LightScene& result, std::vector<GpuBlocker>& blockers, std::vect
     const double opacity = scene.material_of(int(index)).opacity;
     for (std::size_t i = 0; i < placed.mesh.triangles.size(); ++i) {
         const auto corners = corners_of(placed, i);
-        const scene::ShadingGrids::Grid& grid = grids.grids()[result.surfaces.size()];
+        const scene::TriangleGrid& grid = grids.grids()[result.surfaces.size()];
         const GpuSurface& surface = result.surfaces.emplace_back(surface_of(placed, corners, grid));
         result.starts.push_back(grid.start);
         if (!object.casts_shadow || opacity <= 0) continue;
