@@ -70,6 +70,8 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
     add_gl_options(app, options.gl);
     app.add_flag("--anisotropic-shading", settings.grid.anisotropic,
                  "memoised: coarser shading where lens and shutter blur it");
+    app.add_flag("--keep-shading", settings.keep_shading,
+                 "memoised: keep shading samples from frame to frame until their surface or light changes");
     app.option_defaults()->group(group);
 }
 
@@ -95,6 +97,7 @@ std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArgumen
                                                          Diagnostics& diagnostics) {
     std::vector<std::string> unused = options.given;
     if (options.settings.grid.anisotropic) unused.push_back("--anisotropic-shading");
+    if (options.settings.keep_shading) unused.push_back("--keep-shading");
     const auto visibility = scene::parse_visibility(options.visibility);
     if (visibility != scene::Visibility::memoised)
         for (const std::string& name : unused)
@@ -107,6 +110,11 @@ std::optional<scene::VisibilitySettings> read_visibility(const VisibilityArgumen
     if (visibility == scene::Visibility::memoised && options.device == "gl" && options.cache == "lru")
         diagnostics.error({"--shading-cache lru", 0, 0},
                           "is for --visibility-on cpu; gl has fifo, in buckets of four entries");
+    if (visibility == scene::Visibility::memoised && options.settings.keep_shading) {
+        const Place place{"--keep-shading", 0, 0};
+        if (options.device == "gl") diagnostics.error(place, "is for --visibility-on cpu");
+        if (options.cache != "global") diagnostics.error(place, "is for --shading-cache global");
+    }
     if (!visibility) return std::nullopt;
     scene::VisibilitySettings settings = options.settings;
     settings.visibility = *visibility;
@@ -124,6 +132,7 @@ nlohmann::ordered_json visibility_json(const std::vector<scene::VisibilityReport
                           {"samples", report.samples},
                           {"hits", report.requests - report.shadings},
                           {"misses", report.shadings},
+                          {"kept", {{"samples", report.kept}, {"highlights", report.highlights}}},
                           {"shading_rate",
                            {{"mean", report.rate.of_pixels},
                             {"p95", report.rate.p95},
@@ -135,6 +144,7 @@ nlohmann::ordered_json visibility_json(const std::vector<scene::VisibilityReport
                             {"shading", report.bytes.shading},
                             {"cache", report.bytes.cache},
                             {"lists", report.bytes.lists},
+                            {"kept", report.bytes.kept},
                             {"supersampled", report.bytes.supersampled}}}});
     return frames;
 }
@@ -146,6 +156,10 @@ void print_visibility(const std::vector<scene::VisibilityReport>& reports) {
             "most {:.2f}; cache hits {}, misses {}\n",
             report.frame, report.rate.of_pixels, report.samples, report.rate.of_covered_pixels,
             report.rate.p95, report.requests - report.shadings, report.shadings);
+        if (report.kept > 0)
+            std::cerr << fmt::format(
+                "frame {}: {} shading samples of earlier frames, {} with a new highlight\n", report.frame,
+                report.kept, report.highlights);
         if (report.list_nodes + report.list_overflows > 0)
             std::cerr << fmt::format("frame {}: lists hold {} transparent surfaces, {} found no room{}\n",
                                      report.frame, report.list_nodes, report.list_overflows,

@@ -42,6 +42,16 @@ void for_each_row(int rows, int threads, const Work& work) {
     if (failure) std::rethrow_exception(failure);
 }
 
+/// Calls work(i) for each index below `count`, many at once on one thread, in no order.
+template <class Work>
+void for_each_index(std::size_t count, int threads, const Work& work) {
+    constexpr std::size_t kAtOnce = 256;
+    for_each_row(int((count + kAtOnce - 1) / kAtOnce), threads, [&](int part) {
+        const std::size_t first = std::size_t(part) * kAtOnce;
+        for (std::size_t i = first; i < std::min(first + kAtOnce, count); ++i) work(i);
+    });
+}
+
 /// Values from `begin` to before `end`.
 struct Part {
     std::size_t begin = 0;

@@ -237,7 +237,7 @@ private:
         const Scene triangles = triangulated(scene_);
         VisibilityPicture picture =
             render_visibility(SceneRenderer(triangles, job_.width_px, job_.height_px, job_.threads), frame,
-                              settings, job_.visibility_passes);
+                              settings, job_.visibility_passes, settings.keep_shading ? &kept_ : nullptr);
         report_.render_s += seconds_since(start);
         report_.visibility.push_back(picture.report);
         Capture capture = empty_capture(frame);
@@ -307,6 +307,7 @@ private:
     const Profile& profile_;
     const Job& job_;
     SceneRenderer renderer_;
+    KeptShadings kept_;
     JobReport report_;
     std::vector<int> rendered_;  ///< frames
     std::set<std::string> left_out_;

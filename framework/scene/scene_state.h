@@ -15,6 +15,7 @@ struct LightState {
     glm::dvec3 half_u_m{0};          ///< area: from the centre to the middle of a side
     glm::dvec3 half_v_m{0};
     glm::dvec3 color_intensity{0};
+    bool operator==(const LightState&) const = default;
 };
 
 struct CameraState {

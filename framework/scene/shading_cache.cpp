@@ -40,6 +40,16 @@ void for_each_tile(const SampleIds& samples, int tile_px, const Visit& visit) {
         for (int left = 0; left < samples.width_px; left += tile_px) visit(left, top);
 }
 
+/// `share_of(address)` is what each sample that used it has of a shading.
+template <class ShareOf>
+std::vector<float> sums_of_pixels(const SampleIds& addresses, const ShareOf& share_of) {
+    std::vector<float> of_pixel(addresses.pixel_count());
+    for (std::size_t pixel = 0; pixel < of_pixel.size(); ++pixel)
+        for (const std::uint32_t address : addresses.of_pixel(pixel))
+            if (address != kNoShading) of_pixel[pixel] += share_of(address);
+    return of_pixel;
+}
+
 /// The shadings of a picture as they are made and used.
 class Shadings {
 public:
@@ -60,11 +70,10 @@ public:
         replay_.shadings = uses_.size();
         replay_.bytes = cache_bytes;
         for (const std::uint32_t uses : uses_) replay_.requests += uses;
-        replay_.of_pixel.resize(samples_.pixel_count());
-        for (std::size_t pixel = 0; pixel < replay_.of_pixel.size(); ++pixel)
-            for (std::size_t i = samples_.first_of(pixel); i < samples_.first_of(pixel + 1); ++i)
-                if (const std::uint32_t address = replay_.addresses[i]; address != kNoShading)
-                    replay_.of_pixel[pixel] += 1.0f / float(uses_[address]);
+        SampleIds addresses = samples_;
+        addresses.ids = replay_.addresses;
+        replay_.of_pixel =
+            sums_of_pixels(addresses, [&](std::uint32_t address) { return 1.0f / float(uses_[address]); });
         return std::move(replay_);
     }
 
@@ -158,6 +167,15 @@ CacheReplay replay_sorted(const SampleIds& samples, int tile_px) {
 
 std::optional<ShadingCache> parse_shading_cache(std::string_view name) {
     return value_named(kCacheNames, name);
+}
+
+std::vector<float> shadings_of_pixels(const SampleIds& addresses, std::span<const char> counts) {
+    std::vector<std::uint32_t> uses(counts.size());
+    for (const std::uint32_t address : addresses.ids)
+        if (address != kNoShading) ++uses[address];
+    return sums_of_pixels(addresses, [&](std::uint32_t address) {
+        return counts[address] ? 1.0f / float(uses[address]) : 0.0f;
+    });
 }
 
 CacheReplay replay(const SampleIds& samples, const ShadingCacheSettings& settings) {

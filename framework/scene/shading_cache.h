@@ -56,6 +56,9 @@ struct CacheReplay {
     std::vector<std::uint32_t> addresses{};  ///< that each sample fetches; kNoShading where it met nothing
 };
 
+/// Shadings of each pixel: each that counts, by its address, is divided among the samples that used it.
+std::vector<float> shadings_of_pixels(const SampleIds& addresses, std::span<const char> counts);
+
 /// Samples come tile by tile, the pixels of a tile row by row.
 CacheReplay replay(const SampleIds& samples, const ShadingCacheSettings& settings);
 

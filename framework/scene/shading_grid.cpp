@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "framework/base/error.h"
 #include "framework/base/option.h"
@@ -46,22 +47,40 @@ dvec2 inside_triangle(const dvec2& barycentric) {
 
 }  // namespace
 
-ShadingGrids::ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings)
-    : renderer_(renderer), world_(renderer.world_at(frame, frame)) {
+ShadingGrids::ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings,
+                           const FrameGrids* earlier)
+    : renderer_(renderer),
+      world_(renderer.world_at(frame, frame)),
+      of_frame_{frame, {}, {world_.state().camera}} {
     const Scene& scene = renderer.scene();
     const Exposure exposure = exposure_of(scene.camera, frame);
     const std::array<SceneState, 2> ends = {state_at(scene, frame, exposure.first),
                                             state_at(scene, frame, exposure.last)};
+    std::vector<TriangleGrid>& all = of_frame_.grids;
+    std::optional<KeptGrids> kept;
+    if (earlier) kept.emplace(renderer, world_.state(), *earlier);
     std::uint64_t cells = 0;
     for (std::size_t object = 0; object < scene.objects.size(); ++object) {
-        first_triangle_.push_back(std::uint32_t(grids_.size()));
+        first_triangle_.push_back(std::uint32_t(all.size()));
         const int index = scene.objects[object].shape.mesh;
         if (index < 0) continue;
         const Mesh& mesh = scene.meshes[std::size_t(index)];
         for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
-            grids_.push_back(grid_of(int(object), mesh, triangle, settings, ends));
-            Grid& grid = grids_.back();
+            const std::array<dvec3, 3> corners = corners_of(mesh, triangle);
+            glm::dmat2 wanted(settings.rate);
+            if (settings.anisotropic)
+                wanted = settings.rate * cells_from_px_of_blur(renderer, world_.state().camera, ends,
+                                                               world_.state().world_from_object[object],
+                                                               int(object), corners);
+            TriangleGrid grid = grid_of(int(object), corners, wanted, settings.origin);
+            if (kept && !kept->has_moved(int(object))) {
+                const auto earlier_grid =
+                    kept->kept(grid, all.size(), int(object), corners, wanted, of_frame_.cameras);
+                grid = earlier_grid ? *earlier_grid
+                                    : grid_of(int(object), corners, kFiner * wanted, settings.origin);
+            }
             grid.start = std::uint32_t(cells);
+            all.push_back(grid);
             cells += std::uint64_t(grid.size.x) * std::uint64_t(grid.size.y);
             if (2 * cells > kMaxShadingIds)
                 throw Error(
@@ -81,23 +100,19 @@ const Mesh& ShadingGrids::mesh_of(int object) const {
 }
 
 /// The middle of the picture where a point lies behind the camera: somewhere on the grid.
-dvec2 ShadingGrids::reference_px(const dvec3& world) const {
+dvec2 ShadingGrids::reference_px(const dvec3& world, const CameraState& camera) const {
     const dvec2 picture_px(renderer_.width_px(), renderer_.height_px());
     dvec2 px;
-    if (!renderer_.project(world_.state().camera, dvec4(world, 1), px)) return 0.5 * picture_px;
+    if (!renderer_.project(camera, dvec4(world, 1), px)) return 0.5 * picture_px;
     return glm::clamp(px, -picture_px, 2.0 * picture_px);
 }
 
-ShadingGrids::Grid ShadingGrids::grid_of(int object, const Mesh& mesh, std::uint32_t triangle,
-                                         const ShadingGridSettings& settings,
-                                         const std::array<SceneState, 2>& ends) const {
-    const std::array<dvec3, 3> corners = corners_of(mesh, triangle);
+TriangleGrid ShadingGrids::grid_of(int object, const std::array<dvec3, 3>& corners,
+                                   const glm::dmat2& cells_from_px, GridOrigin origin) const {
     const glm::dmat4& world_from_object = world_.state().world_from_object[std::size_t(object)];
-    Grid grid;
-    grid.cells_from_px = glm::dmat2(settings.rate);
-    if (settings.anisotropic)
-        grid.cells_from_px = settings.rate * cells_from_px_of_blur(renderer_, world_.state().camera, ends,
-                                                                   world_from_object, object, corners);
+    const CameraState& camera = world_.state().camera;
+    TriangleGrid grid;
+    grid.cells_from_px = cells_from_px;
     const dvec2 picture_px(renderer_.width_px(), renderer_.height_px());
     dvec2 low(1e300), high(-1e300), unused;
     const auto add = [&](const dvec2& px) {
@@ -106,12 +121,12 @@ ShadingGrids::Grid ShadingGrids::grid_of(int object, const Mesh& mesh, std::uint
     };
     for (const dvec3& corner : corners) {
         const dvec4 world = world_from_object * dvec4(corner, 1);
-        add(reference_px(dvec3(world)));
-        if (renderer_.project(world_.state().camera, world, unused)) continue;
+        add(reference_px(dvec3(world), camera));
+        if (renderer_.project(camera, world, unused)) continue;
         // What crosses the camera's plane may be anywhere.
         for (const dvec2 part : {dvec2(-1), dvec2(2, -1), dvec2(-1, 2), dvec2(2)}) add(part * picture_px);
     }
-    if (settings.origin == GridOrigin::triangle) {
+    if (origin == GridOrigin::triangle) {
         grid.size = glm::max(glm::ivec2(glm::ceil(high - low - kHardlyMore)), 1);
         const dvec2 fit = dvec2(grid.size) / glm::max(high - low, dvec2(kHardlyMore));
         grid.cells_from_px = glm::dmat2(fit.x, 0, 0, fit.y) * grid.cells_from_px;
@@ -124,9 +139,10 @@ ShadingGrids::Grid ShadingGrids::grid_of(int object, const Mesh& mesh, std::uint
 }
 
 std::uint32_t ShadingGrids::id_of(const Surface& surface) const {
-    const Grid& grid = grids_[first_triangle_[std::size_t(surface.object)] + surface.triangle];
+    const TriangleGrid& grid = grids()[first_triangle_[std::size_t(surface.object)] + surface.triangle];
     const glm::dmat4& world_from_object = world_.state().world_from_object[std::size_t(surface.object)];
-    const dvec2 px = reference_px(dvec3(world_from_object * dvec4(surface.local, 1)));
+    const dvec2 px =
+        reference_px(dvec3(world_from_object * dvec4(surface.local, 1)), of_frame_.cameras[grid.camera]);
     const glm::ivec2 cell =
         glm::clamp(glm::ivec2(glm::floor(grid.cells_from_px * px - grid.low)), glm::ivec2(0), grid.size - 1);
     return 2 * (grid.start + std::uint32_t(cell.y * grid.size.x + cell.x)) + (surface.from_behind ? 1 : 0);
@@ -134,17 +150,17 @@ std::uint32_t ShadingGrids::id_of(const Surface& surface) const {
 
 std::uint32_t ShadingGrids::triangle_of(std::uint32_t id) const {
     const auto after =
-        std::upper_bound(grids_.begin(), grids_.end(), id / 2,
-                         [](std::uint32_t cell, const Grid& grid) { return cell < grid.start; });
-    return std::uint32_t(after - grids_.begin()) - 1;
+        std::upper_bound(grids().begin(), grids().end(), id / 2,
+                         [](std::uint32_t cell, const TriangleGrid& grid) { return cell < grid.start; });
+    return std::uint32_t(after - grids().begin()) - 1;
 }
 
-Ray ShadingGrids::ray_through(const ShadingPlace& place, std::uint32_t id, const dvec2& part) const {
-    const Grid& grid = grids_[first_triangle_[std::size_t(place.object)] + place.triangle];
+Ray ShadingGrids::ray_through(int object, std::uint32_t triangle, std::uint32_t id, const dvec2& part) const {
+    const TriangleGrid& grid = grids()[first_triangle_[std::size_t(object)] + triangle];
     const std::uint32_t cell = id / 2 - grid.start, columns = std::uint32_t(grid.size.x);
     const dvec2 px =
         glm::inverse(grid.cells_from_px) * (grid.low + dvec2(cell % columns, cell / columns) + part);
-    return world_.to_object(place.object, renderer_.camera_ray(world_.state().camera, px, dvec2(0)));
+    return world_.to_object(object, renderer_.camera_ray(of_frame_.cameras[grid.camera], px, dvec2(0)));
 }
 
 ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
@@ -155,14 +171,16 @@ ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
     place.object = int(object - first_triangle_.begin());
     place.triangle = index - *object;
     place.from_behind = (id & 1) != 0;
-    place.barycentric = inside_triangle(barycentric_on_plane(
-        ray_through(place, id, dvec2(0.5)), corners_of(mesh_of(place.object), place.triangle)));
+    place.barycentric =
+        inside_triangle(barycentric_on_plane(ray_through(place.object, place.triangle, id, dvec2(0.5)),
+                                             corners_of(mesh_of(place.object), place.triangle)));
     return place;
 }
 
 dvec2 ShadingGrids::uv_through(const ShadingPlace& place, std::uint32_t id, const dvec2& part) const {
     const Mesh& mesh = mesh_of(place.object);
-    const dvec2 on = barycentric_on_plane(ray_through(place, id, part), corners_of(mesh, place.triangle));
+    const dvec2 on = barycentric_on_plane(ray_through(place.object, place.triangle, id, part),
+                                          corners_of(mesh, place.triangle));
     return mesh_point(mesh, {0, place.triangle, on}).uv;
 }
 
@@ -171,37 +189,39 @@ glm::dmat2 ShadingGrids::uv_of_cell(const ShadingPlace& place, std::uint32_t id)
             uv_through(place, id, {0.5, 1}) - uv_through(place, id, {0.5, 0})};
 }
 
-dvec3 ShadingGrids::mean_albedo(const ShadingPlace& place, std::uint32_t id, const Material& material,
-                                const glm::dmat2& uv_of_cell) const {
-    const Mesh& mesh = mesh_of(place.object);
-    const std::array<dvec3, 3> corners = corners_of(mesh, place.triangle);
-    const glm::dmat2 uv_of_place = uv_of_cell / double(kAlbedoPoints);
-    const auto albedo = [&](const dvec2& barycentric) {
-        return albedo_at(material, mesh_point(mesh, {0, place.triangle, barycentric}).uv, uv_of_place);
-    };
+/// `middle` is the cell's: it stands for a cell of which the triangle covers no place.
+dvec3 ShadingGrids::mean_albedo(const Surface& middle, std::uint32_t id, const Material& material) const {
+    const Mesh& mesh = mesh_of(middle.object);
+    const std::array<dvec3, 3> corners = corners_of(mesh, middle.triangle);
+    const glm::dmat2 uv_of_place = middle.uv_of_pixel.value_or(glm::dmat2(0)) / double(kAlbedoPoints);
     dvec3 sum(0);
     int count = 0;
     for (int i = 0; i < kAlbedoPoints * kAlbedoPoints; ++i) {
         const dvec2 part = (dvec2(i % kAlbedoPoints, i / kAlbedoPoints) + 0.5) / double(kAlbedoPoints);
-        const dvec2 barycentric = barycentric_on_plane(ray_through(place, id, part), corners);
+        const dvec2 barycentric =
+            barycentric_on_plane(ray_through(middle.object, middle.triangle, id, part), corners);
         if (barycentric.x < 0 || barycentric.y < 0 || barycentric.x + barycentric.y > 1) continue;
-        sum += albedo(barycentric);
+        sum += albedo_at(material, mesh_point(mesh, {0, middle.triangle, barycentric}).uv, uv_of_place);
         ++count;
     }
-    return count > 0 ? sum / double(count) : albedo(place.barycentric);
+    return count > 0 ? sum / double(count) : albedo_at(material, middle.uv, uv_of_place);
 }
 
-dvec3 ShadingGrids::shade(std::uint32_t id) const {
-    const Scene& scene = renderer_.scene();
+Surface ShadingGrids::surface_of(std::uint32_t id, std::uint32_t ray_id) const {
     const ShadingPlace place = place_of(id);
-    const Material& material = scene.materials[scene.material_at(place.object, place.triangle)];
     Surface surface = world_.surface_on(place.object, place.triangle, place.barycentric, place.from_behind);
-    surface.light_seed = light_seed(id, 0);
-    if (material.maps.any()) surface.uv_of_pixel = uv_of_cell(place, id);
-    Shading shading = world_.shade(surface, dvec3(world_.state().camera.world_from_camera[3]));
+    surface.light_seed = light_seed(ray_id, 0);
+    if (world_.material_at(surface).maps.any()) surface.uv_of_pixel = uv_of_cell(place, id);
+    return surface;
+}
+
+Shading ShadingGrids::shading(std::uint32_t id, std::span<double> seen) const {
+    const Surface surface = surface_of(id, id);
+    Shading shading = world_.shade(surface, dvec3(world_.state().camera.world_from_camera[3]), seen);
+    const Material& material = world_.material_at(surface);
     if (material.checker_cells != dvec2(0) || material.maps.any())
-        shading.albedo = mean_albedo(place, id, material, surface.uv_of_pixel.value_or(glm::dmat2(0)));
-    return shading.color();
+        shading.albedo = mean_albedo(surface, id, material);
+    return shading;
 }
 
 }  // namespace aftershade::scene

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "framework/scene/scene_renderer.h"
+#include "framework/scene/triangle_grid.h"
 
 namespace aftershade::scene {
 
@@ -36,14 +38,16 @@ struct ShadingPlace {
 };
 
 /// Each triangle has a grid over its bounds as the reference pose shows them: the pinhole camera at the
-/// frame's own time. Ids are the prefix sum over the triangles' cells, twice: the two sides of a triangle
-/// have ids of their own. Beyond one picture's width and height outside the picture all is the grid's border.
-/// [const functions: any thread]
+/// frame's own time, or at that of an earlier frame whose grid still serves. Ids are the prefix sum over the
+/// triangles' cells, twice: the two sides of a triangle have ids of their own. Beyond one picture's width and
+/// height outside the picture all is the grid's border. [const functions: any thread]
 class ShadingGrids {
 public:
-    /// `renderer` is of a scene of meshes (triangulated()) and must outlive this. Throws
-    /// Error(ErrorKind::usage) where kMaxShadingIds are not enough.
-    ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings);
+    /// `renderer` is of a scene of meshes (triangulated()) and must outlive this. Triangles that have not
+    /// moved keep their earlier grid while it serves (KeptGrids). Throws Error(ErrorKind::usage) where
+    /// kMaxShadingIds are not enough.
+    ShadingGrids(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings,
+                 const FrameGrids* earlier = nullptr);
 
     std::uint32_t id_count() const { return id_count_; }
     /// The id of a point that a ray hit, at any time.
@@ -53,37 +57,34 @@ public:
     /// Which triangle of the whole scene an id belongs to.
     std::uint32_t triangle_of(std::uint32_t id) const;
     /// Light at the cell's centre, with the mean albedo of kAlbedoPoints x kAlbedoPoints places of the cell.
-    glm::dvec3 shade(std::uint32_t id) const;
+    /// `seen` is that of World::shade().
+    Shading shading(std::uint32_t id, std::span<double> seen = {}) const;
+    glm::dvec3 shade(std::uint32_t id) const { return shading(id).color(); }
     static constexpr int kAlbedoPoints = 4;
+    /// Where that light is computed, with the random rays of the cell that had the id `ray_id`.
+    Surface surface_of(std::uint32_t id, std::uint32_t ray_id) const;
+    const World& world() const { return world_; }
 
-    /// The grid of one triangle.
-    struct Grid {
-        glm::dmat2 cells_from_px{1};
-        glm::dvec2 low{0};  ///< of the grid, in cells
-        glm::ivec2 size{1};
-        std::uint32_t start = 0;  ///< the first id over 2
-    };
-    /// The grid of each triangle of each object, in their order.
-    const std::vector<Grid>& grids() const { return grids_; }
+    const std::vector<TriangleGrid>& grids() const { return of_frame_.grids; }
+    const FrameGrids& of_frame() const { return of_frame_; }
     const SceneState& reference() const { return world_.state(); }
 
 private:
-    Grid grid_of(int object, const Mesh& mesh, std::uint32_t triangle, const ShadingGridSettings& settings,
-                 const std::array<SceneState, 2>& ends) const;
-    glm::dvec2 reference_px(const glm::dvec3& world) const;
+    TriangleGrid grid_of(int object, const std::array<glm::dvec3, 3>& corners,
+                         const glm::dmat2& cells_from_px, GridOrigin origin) const;
+    glm::dvec2 reference_px(const glm::dvec3& world, const CameraState& camera) const;
     const Mesh& mesh_of(int object) const;
     /// The ray through `part` of a cell, 0 to 1 along x and y, in the object's space.
-    Ray ray_through(const ShadingPlace& place, std::uint32_t id, const glm::dvec2& part) const;
+    Ray ray_through(int object, std::uint32_t triangle, std::uint32_t id, const glm::dvec2& part) const;
     glm::dvec2 uv_through(const ShadingPlace& place, std::uint32_t id, const glm::dvec2& part) const;
     /// The sides of a cell in texture coordinates.
     glm::dmat2 uv_of_cell(const ShadingPlace& place, std::uint32_t id) const;
-    glm::dvec3 mean_albedo(const ShadingPlace& place, std::uint32_t id, const Material& material,
-                           const glm::dmat2& uv_of_cell) const;
+    glm::dvec3 mean_albedo(const Surface& middle, std::uint32_t id, const Material& material) const;
 
     const SceneRenderer& renderer_;
     World world_;                                ///< at the frame's own time
     std::vector<std::uint32_t> first_triangle_;  ///< of each object
-    std::vector<Grid> grids_;
+    FrameGrids of_frame_;
     std::uint32_t id_count_ = 0;
 };
 

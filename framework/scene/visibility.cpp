@@ -51,13 +51,8 @@ std::optional<Surface> trace_sample(const World& world, const Ray& ray, const Vi
 /// The light of each address.
 std::vector<dvec3> shade_all(const SceneRenderer& renderer, const ShadingGrids& grids,
                              std::span<const std::uint32_t> ids) {
-    constexpr std::size_t kAtOnce = 256;
     std::vector<dvec3> light(ids.size());
-    for_each_row(int((ids.size() + kAtOnce - 1) / kAtOnce), renderer.threads(), [&](int part) {
-        const std::size_t first = std::size_t(part) * kAtOnce;
-        for (std::size_t i = first; i < std::min(first + kAtOnce, ids.size()); ++i)
-            light[i] = grids.shade(ids[i]);
-    });
+    for_each_index(ids.size(), renderer.threads(), [&](std::size_t i) { light[i] = grids.shade(ids[i]); });
     return light;
 }
 
@@ -86,9 +81,8 @@ dvec3 blended(std::span<const std::uint32_t> addresses, std::span<const ListNode
 }
 
 /// `addresses` are those of what samples crossed, if there are lists, and of what they ended at.
-Image blend(const SceneRenderer& renderer, const ShadingGrids& grids, std::span<const std::uint32_t> ids,
-            const SampleIds& addresses, const TransparentLists* lists) {
-    const std::vector<dvec3> light = shade_all(renderer, grids, ids);
+Image blend(const SceneRenderer& renderer, std::span<const dvec3> light, const SampleIds& addresses,
+            const TransparentLists* lists) {
     Image color(renderer.width_px(), renderer.height_px(), 4);
     const auto light_of = [&](std::uint32_t address) {
         return address == kNoShading ? renderer.scene().background : light[address];
@@ -179,7 +173,7 @@ Image rate_image(const SceneRenderer& renderer, const std::vector<float>& of_pix
 
 VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
                                   const VisibilitySettings& settings, const Traced& traced,
-                                  const LightResolver& resolve) {
+                                  const LightResolver& resolve, KeptShadings* kept) {
     SampleIds samples{traced.ends, renderer.width_px(), renderer.height_px(), settings.samples};
     AllIds all;
     if (traced.lists) {
@@ -187,25 +181,35 @@ VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGr
         samples.ids = all.ids;
         samples.first = all.first;
     }
-    const CacheReplay replayed = replay(samples, settings.cache);
+    CacheReplay replayed = replay(samples, settings.cache);
     SampleIds addresses = samples;
     addresses.ids = replayed.addresses;
+    const TransparentLists* lists = traced.lists ? &*traced.lists : nullptr;
     VisibilityPicture picture;
-    picture.color = traced.lists ? blend(renderer, grids, replayed.ids, addresses, &*traced.lists)
-                                 : resolve(renderer, grids, replayed.ids, addresses);
-    picture.shading_rate = rate_image(renderer, replayed.of_pixel);
     VisibilityReport& report = picture.report;
+    if (kept) {
+        const KeptShadings::Lit lit = kept->light(renderer, grids, replayed.ids);
+        picture.color = blend(renderer, lit.light, addresses, lists);
+        replayed.of_pixel = shadings_of_pixels(addresses, lit.is_new);
+        report.kept = std::uint64_t(std::ranges::count(lit.is_new, 0));
+        report.highlights = lit.highlights;
+        report.bytes.kept = kept->bytes();
+    } else {
+        picture.color = lists ? blend(renderer, shade_all(renderer, grids, replayed.ids), addresses, lists)
+                              : resolve(renderer, grids, replayed.ids, addresses);
+    }
+    picture.shading_rate = rate_image(renderer, replayed.of_pixel);
     report.frame = frame;
     report.samples = settings.samples;
     report.requests = replayed.requests;
-    report.shadings = replayed.shadings;
+    report.shadings = replayed.shadings - report.kept;
     report.bytes.visibility = traced.ends.size() * kReferenceBytes;
     report.bytes.shading = replayed.shadings * kShadingBytes;
     report.bytes.cache = replayed.bytes;
-    if (traced.lists) {
-        report.list_nodes = traced.lists->node_count();
-        report.list_overflows = traced.lists->overflows();
-        report.bytes.lists = traced.lists->bytes();
+    if (lists) {
+        report.list_nodes = lists->node_count();
+        report.list_overflows = lists->overflows();
+        report.bytes.lists = lists->bytes();
     }
     report.rate.multisampled = double(triangles_of_pixels(renderer, grids, samples));
     complete(report, replayed.of_pixel, met_samples(renderer, traced, settings.samples));
@@ -288,7 +292,7 @@ std::vector<std::uint32_t> trace_ids(const SceneRenderer& renderer, const Shadin
 
 Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids,
                     std::span<const std::uint32_t> ids, const SampleIds& addresses) {
-    return blend(renderer, grids, ids, addresses, nullptr);
+    return blend(renderer, shade_all(renderer, grids, ids), addresses, nullptr);
 }
 
 LitSamples::LitSamples(int width_px, int height_px)
@@ -331,15 +335,17 @@ TruthSettings truth_of(const VisibilitySettings& settings) {
 }
 
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
-                                    const VisibilitySettings& settings, const VisibilityPasses& passes) {
+                                    const VisibilitySettings& settings, const VisibilityPasses& passes,
+                                    KeptShadings* kept) {
     if (settings.visibility != Visibility::memoised)
         return render_plain(renderer, frame, settings, passes.light);
-    const ShadingGrids grids(renderer, frame, settings.grid);
+    const ShadingGrids grids = kept ? kept->next_frame(renderer, frame, settings.grid)
+                                    : ShadingGrids(renderer, frame, settings.grid);
     Traced traced;
     if (settings.transparency.transparency == Transparency::lists)
         traced = trace_lists(renderer, grids, frame, settings);
     else traced.ends = passes.trace(renderer, grids, frame, settings);
-    return render_memoised(renderer, grids, frame, settings, traced, passes.resolve);
+    return render_memoised(renderer, grids, frame, settings, traced, passes.resolve, kept);
 }
 
 }  // namespace aftershade::scene

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/scene/kept_shadings.h"
 #include "framework/scene/scene_renderer.h"
 #include "framework/scene/shading_cache.h"
 #include "framework/scene/shading_grid.h"
@@ -36,6 +37,7 @@ struct VisibilitySettings {
     ShadingGridSettings grid;
     ShadingCacheSettings cache;
     TransparencySettings transparency;
+    bool keep_shading = false;  ///< ShadingCache::global: from frame to frame of a sequence (KeptShadings)
 };
 
 /// Shadings of a pixel.
@@ -53,6 +55,7 @@ struct VisibilityBytes {
     std::uint64_t shading = 0;
     std::uint64_t cache = 0;
     std::uint64_t lists = 0;         ///< of transparent surfaces
+    std::uint64_t kept = 0;          ///< of samples that live on to the next frame
     std::uint64_t supersampled = 0;  ///< what a G-buffer of all samples would take
 };
 
@@ -61,6 +64,8 @@ struct VisibilityReport {
     int samples = 0;
     std::uint64_t requests = 0;        ///< surfaces that samples met: one each, or all that they blend
     std::uint64_t shadings = 0;        ///< requests that the cache had nothing for
+    std::uint64_t kept = 0;            ///< shading samples of earlier frames, which are not among those
+    std::uint64_t highlights = 0;      ///< of them: computed for this frame's camera, without rays
     std::uint64_t list_nodes = 0;      ///< surfaces in lists
     std::uint64_t list_overflows = 0;  ///< surfaces that no list had room for; those stop samples by chance
     ShadingRate rate;
@@ -113,8 +118,11 @@ struct VisibilityPasses {
 
 /// `renderer` is of a scene of meshes (triangulated()). All caches give the same picture; they change only
 /// the count, and the time. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
-/// Transparency::sorted is for the others.
+/// Transparency::sorted is for the others. `kept` is for Visibility::memoised with ShadingCache::global; it
+/// has the samples of the frames that were rendered with it before, and then of this one. Its light does not
+/// come from passes.resolve.
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
-                                    const VisibilitySettings& settings, const VisibilityPasses& passes = {});
+                                    const VisibilitySettings& settings, const VisibilityPasses& passes = {},
+                                    KeptShadings* kept = nullptr);
 
 }  // namespace aftershade::scene

@@ -33,7 +33,6 @@ Geometry::Geometry(const Scene& scene) : scene_(scene) {
 
 World::World(const Geometry& geometry, SceneState state, double px_per_tangent)
     : geometry_(&geometry), state_(std::move(state)), px_per_tangent_(px_per_tangent) {
-    std::vector<Bounds> bounds;
     for (std::size_t i = 0; i < state_.world_from_object.size(); ++i) {
         const Object& object = scene().objects[i];
         const MeshTree* mesh = geometry.mesh_of(object.shape);
@@ -43,13 +42,18 @@ World::World(const Geometry& geometry, SceneState state, double px_per_tangent)
         const dmat4& matrix = state_.world_from_object[i];
         seen_.push_back({int(i), object.casts_shadow, scene().material_of(int(i)).opacity, &object.shape,
                          mesh, glm::dmat4x3(glm::inverse(matrix))});
-        bounds.push_back(transformed(local, matrix));
+        bounds_.push_back(transformed(local, matrix));
         // A flat box keeps rays that run along it only if it has some height.
-        const dvec3 margin = 1e-12 * glm::max(glm::abs(bounds.back().low), glm::abs(bounds.back().high));
-        bounds.back().low -= margin;
-        bounds.back().high += margin;
+        const dvec3 margin = 1e-12 * glm::max(glm::abs(bounds_.back().low), glm::abs(bounds_.back().high));
+        bounds_.back().low -= margin;
+        bounds_.back().high += margin;
     }
-    bvh_ = build_bvh(bounds, 2);
+    bvh_ = build_bvh(bounds_, 2);
+}
+
+Bounds World::bounds(int object) const {
+    const int seen = seen_of_object_[std::size_t(object)];
+    return seen < 0 ? Bounds() : bounds_[std::size_t(seen)];
 }
 
 dvec3 World::to_object(int object, const dvec3& position) const {

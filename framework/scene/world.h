@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "framework/scene/material.h"
@@ -99,8 +100,20 @@ public:
                        bool from_behind) const;
 
     /// E / pi, with shadows.
-    glm::dvec3 irradiance(const Surface& surface) const { return light(surface, {}, nullptr).irradiance; }
-    Shading shade(const Surface& surface, const glm::dvec3& eye) const;
+    glm::dvec3 irradiance(const Surface& surface) const { return light(surface, {}, nullptr, {}).irradiance; }
+    /// Writes to `seen`, unless that is empty, which share of each light reaches the surface; 0 of a light
+    /// that it faces away from.
+    Shading shade(const Surface& surface, const glm::dvec3& eye, std::span<double> seen = {}) const;
+    /// Shading::specular alone, the one part that depends on the eye, to the bit and without rays: `seen` is
+    /// what shade() wrote. The surface has a `uv_of_pixel` if its material has maps.
+    glm::dvec3 highlights(const Surface& surface, const glm::dvec3& eye, std::span<const double> seen) const;
+    /// Whether any ray that shade() sends from the surface meets one of the boxes. The same of `uv_of_pixel`.
+    bool light_meets(const Surface& surface, const Bvh& boxes) const;
+    /// Of an object, in world space; empty where there is nothing to see of it.
+    Bounds bounds(int object) const;
+    const Material& material_at(const Surface& surface) const {
+        return scene().materials[scene().material_at(surface.object, surface.triangle)];
+    }
 
 private:
     /// The data of an object that a ray needs, close together.
@@ -121,13 +134,33 @@ private:
     static constexpr double kPast = 1 + 1e-7;
     template <class Visit>
     void walk(const Ray& ray, double low, double& high, const Visit& visit) const;
-    Shading light(const Surface& surface, const Finish& finish, const glm::dvec3* to_eye) const;
-    void add_light(std::size_t index, const Surface& surface, const Finish& finish, const glm::dvec3* to_eye,
-                   Shading& shading) const;
+    /// A surface with its normal map applied, and its finish there.
+    struct Finished {
+        Surface surface;
+        Finish finish;
+    };
+    Finished finished(const Surface& surface, const glm::dvec3& eye) const;
     glm::dmat2 uv_of_pixel(const Surface& surface, const glm::dvec3& eye) const;
     glm::dvec3 mapped_normal(const Surface& surface, const MaterialMaps& maps,
                              const glm::dmat2& uv_of_pixel) const;
-    double visible_part(std::size_t light, const Surface& surface) const;
+    /// Light of one source at a surface, as if nothing stood between.
+    struct Arriving {
+        glm::dvec3 toward{0};    ///< the light's middle
+        double received = 0;     ///< E over the light's colour
+        double highlighted = 0;  ///< the same for the highlight
+    };
+    /// Nothing where the surface faces away.
+    std::optional<Arriving> arriving(std::size_t light, const Surface& surface) const;
+    /// Calls visit(to) for the ends of the rays to a light.
+    template <class Visit>
+    void visit_shadow_rays(std::size_t light, const Surface& surface, const glm::dvec3& toward,
+                           const Visit& visit) const;
+    /// Calls visit(way) for the rays of ambient light.
+    template <class Visit>
+    void visit_ambient_rays(const Surface& surface, const Visit& visit) const;
+    Shading light(const Surface& surface, const Finish& finish, const glm::dvec3* to_eye,
+                  std::span<double> seen) const;
+    double visible_part(std::size_t light, const Surface& surface, const glm::dvec3& toward) const;
     double visible_ambient(const Surface& surface) const;
 
     const Geometry* geometry_;
@@ -135,7 +168,8 @@ private:
     double px_per_tangent_;
     std::vector<int> seen_of_object_;  ///< index into seen_, -1: there is nothing to see of it
     std::vector<Seen> seen_;
-    Bvh bvh_;  ///< over seen_, in world space
+    std::vector<Bounds> bounds_;  ///< of seen_, in world space
+    Bvh bvh_;                     ///< over them
 };
 
 template <class Visit>

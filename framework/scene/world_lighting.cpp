@@ -97,101 +97,166 @@ dvec3 highlight(const Finish& finish, const dvec3& normal, const dvec3& to_light
            (finish.reflectance + (1.0 - finish.reflectance) * squared * squared * grazing);
 }
 
+/// Whether a ray meets one of the boxes between its origin and the end of its direction.
+bool meets_any(const Bvh& boxes, const Ray& ray) {
+    const dvec3 inverse = 1.0 / ray.direction;
+    for (std::uint32_t at = 0; at < boxes.nodes.size();) {
+        const BvhNode& node = boxes.nodes[at];
+        const bool met = meets(ray, inverse, node.bounds, 0, 1);
+        if (met && node.count > 0) return true;
+        at = met ? at + 1 : node.skip;
+    }
+    return false;
+}
+
 }  // namespace
 
-/// Of an area light: the share of a grid of its points that shines through. Points below the surface's
-/// horizon do not count, since polygon_cosine cuts them off; where all are, the highest corner stands for the
-/// rest.
-double World::visible_part(std::size_t index, const Surface& surface) const {
-    const LightState& light = state_.lights[index];
-    const int side = scene().lights[index].shadow_samples;
-    const dvec3 from = off_surface(surface);
-    double seen = 0;
-    int count = 0;
+/// Of an area light: a grid of its points. Points below the surface's horizon do not count, since
+/// polygon_cosine cuts them off; where all are, the highest corner stands for the rest.
+template <class Visit>
+void World::visit_shadow_rays(std::size_t index, const Surface& surface, const dvec3& toward,
+                              const Visit& visit) const {
+    const LightState& now = state_.lights[index];
+    const Light& light = scene().lights[index];
+    if (light.kind == LightKind::directional) return visit(off_surface(surface) + toward * kFar_m);
+    if (light.kind == LightKind::point) return visit(now.position_m);
+    const int side = light.shadow_samples;
+    bool any = false;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             const double u = (x + 0.5) / side * 2 - 1, v = (y + 0.5) / side * 2 - 1;
-            const dvec3 to = light.position_m + u * light.half_u_m + v * light.half_v_m;
+            const dvec3 to = now.position_m + u * now.half_u_m + v * now.half_v_m;
             if (height_over(surface, to) <= 0) continue;
-            ++count;
-            seen += light_through(from, to);
+            any = true;
+            visit(to);
         }
-    if (count > 0) return seen / count;
-    const Quad corners = corners_of(light);
-    const dvec3& highest = *std::max_element(
-        corners.begin(), corners.end(),
-        [&](const dvec3& a, const dvec3& b) { return height_over(surface, a) < height_over(surface, b); });
-    return light_through(from, highest);
+    if (any) return;
+    const Quad corners = corners_of(now);
+    visit(*std::max_element(corners.begin(), corners.end(), [&](const dvec3& a, const dvec3& b) {
+        return height_over(surface, a) < height_over(surface, b);
+    }));
 }
 
-/// The share of the ambient light that shines through, by rays as likely as their cosine (Malley's method).
-double World::visible_ambient(const Surface& surface) const {
-    const int rays = scene().ambient_rays;
-    const std::uint32_t seed = surface.light_seed.value_or(hash_of(surface.local));
-    const glm::dmat3 frame = frame_about(surface.normal);
+/// The share of a light that comes through.
+double World::visible_part(std::size_t index, const Surface& surface, const dvec3& toward) const {
     const dvec3 from = off_surface(surface);
     double seen = 0;
-    for (int i = 0; i < rays; ++i) {
-        const glm::dvec2 on_disk =
-            on_aperture(shifted_hammersley(std::uint32_t(i), std::uint32_t(rays), seed), 0, 0);
-        const double height = std::sqrt(std::max(1 - glm::dot(on_disk, on_disk), 0.0));
-        const dvec3 way = frame * dvec3(on_disk, height);
-        // A mesh does not hide what its bent normal sees behind the flat triangle.
-        seen += glm::dot(way, surface.geometric_normal) > 0 ? light_through(from, from + kFar_m * way) : 1;
-    }
-    return seen / rays;
+    int count = 0;
+    visit_shadow_rays(index, surface, toward, [&](const dvec3& to) {
+        seen += light_through(from, to);
+        ++count;
+    });
+    return seen / count;
 }
 
-void World::add_light(std::size_t index, const Surface& surface, const Finish& finish, const dvec3* to_eye,
-                      Shading& shading) const {
+/// As likely as their cosine (Malley's method).
+template <class Visit>
+void World::visit_ambient_rays(const Surface& surface, const Visit& visit) const {
+    const auto rays = std::uint32_t(scene().ambient_rays);
+    const std::uint32_t seed = surface.light_seed.value_or(hash_of(surface.local));
+    const glm::dmat3 frame = frame_about(surface.normal);
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        const glm::dvec2 on_disk = on_aperture(shifted_hammersley(i, rays, seed), 0, 0);
+        const double height = std::sqrt(std::max(1 - glm::dot(on_disk, on_disk), 0.0));
+        visit(frame * dvec3(on_disk, height));
+    }
+}
+
+/// The share of the ambient light that shines through.
+double World::visible_ambient(const Surface& surface) const {
+    const dvec3 from = off_surface(surface);
+    double seen = 0;
+    visit_ambient_rays(surface, [&](const dvec3& way) {
+        // A mesh does not hide what its bent normal sees behind the flat triangle.
+        seen += glm::dot(way, surface.geometric_normal) > 0 ? light_through(from, from + kFar_m * way) : 1;
+    });
+    return seen / scene().ambient_rays;
+}
+
+std::optional<World::Arriving> World::arriving(std::size_t index, const Surface& surface) const {
     const Light& light = scene().lights[index];
     const LightState& now = state_.lights[index];
     const bool is_area = light.kind == LightKind::area, is_far = light.kind == LightKind::directional;
     const dvec3 way = is_far ? -now.direction : now.position_m - surface.position;
     const double distance2 = glm::dot(way, way);
-    if (distance2 == 0) return;  // in the light itself no direction leads to it
-    const dvec3 toward = way / std::sqrt(distance2);
-    const double cosine = std::max(glm::dot(surface.normal, toward), 0.0);
-    const double front = is_area ? -glm::dot(now.direction, toward) : 1;
+    if (distance2 == 0) return std::nullopt;  // in the light itself no direction leads to it
+    Arriving arriving;
+    arriving.toward = way / std::sqrt(distance2);
+    const double cosine = std::max(glm::dot(surface.normal, arriving.toward), 0.0);
+    const double front = is_area ? -glm::dot(now.direction, arriving.toward) : 1;
     // Parts of an area light may stand above the horizon where its middle does not.
-    if (front <= 0 || (!is_area && glm::dot(surface.geometric_normal, toward) <= 0)) return;
-    double received = is_far ? cosine * pattern_at(light.pattern, surface.position) : cosine / distance2;
-    double highlighted = received;
+    if (front <= 0 || (!is_area && glm::dot(surface.geometric_normal, arriving.toward) <= 0))
+        return std::nullopt;
+    arriving.received = is_far ? cosine * pattern_at(light.pattern, surface.position) : cosine / distance2;
+    arriving.highlighted = arriving.received;
     if (is_area) {
-        highlighted *= front * 4 * glm::length(now.half_u_m) * glm::length(now.half_v_m);
-        received = polygon_cosine(corners_of(now), surface);
+        arriving.highlighted *= front * 4 * glm::length(now.half_u_m) * glm::length(now.half_v_m);
+        arriving.received = polygon_cosine(corners_of(now), surface);
     }
-    if (received <= 0) return;
-    if (light.shadows) {
-        const dvec3 from = off_surface(surface);
-        const dvec3 to = is_far ? from + toward * kFar_m : now.position_m;
-        const double seen = is_area ? visible_part(index, surface) : light_through(from, to);
-        received *= seen;
-        highlighted *= seen;
-    }
-    shading.irradiance += now.color_intensity * (received / std::numbers::pi);
-    if (!to_eye || highlighted <= 0) return;
-    shading.specular +=
-        now.color_intensity * (highlighted * highlight(finish, surface.normal, toward, *to_eye));
+    if (arriving.received <= 0) return std::nullopt;
+    return arriving;
 }
 
-Shading World::light(const Surface& surface, const Finish& finish, const dvec3* to_eye) const {
+Shading World::light(const Surface& surface, const Finish& finish, const dvec3* to_eye,
+                     std::span<double> seen) const {
     Shading shading;
     shading.irradiance = finish.ambient * scene().ambient;
     if (scene().ambient_rays > 0 && scene().ambient != dvec3(0))
         shading.irradiance *= visible_ambient(surface);
-    for (std::size_t i = 0; i < state_.lights.size(); ++i) add_light(i, surface, finish, to_eye, shading);
+    for (std::size_t i = 0; i < state_.lights.size(); ++i) {
+        if (!seen.empty()) seen[i] = 0;
+        const auto source = arriving(i, surface);
+        if (!source) continue;
+        const double part = scene().lights[i].shadows ? visible_part(i, surface, source->toward) : 1;
+        if (!seen.empty()) seen[i] = part;
+        const dvec3& color = state_.lights[i].color_intensity;
+        shading.irradiance += color * (source->received * part / std::numbers::pi);
+        if (to_eye && source->highlighted * part > 0)
+            shading.specular += color * (source->highlighted * part *
+                                         highlight(finish, surface.normal, source->toward, *to_eye));
+    }
     return shading;
 }
 
-Shading World::shade(const Surface& surface, const dvec3& eye) const {
+dvec3 World::highlights(const Surface& surface, const dvec3& eye, std::span<const double> seen) const {
     const dvec3 to_eye = glm::normalize(eye - surface.position);
-    const Material& material = scene().materials[scene().material_at(surface.object, surface.triangle)];
+    const auto [lit, finish] = finished(surface, eye);
+    dvec3 specular(0);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        if (seen[i] <= 0) continue;
+        const auto source = arriving(i, lit);
+        if (source && source->highlighted * seen[i] > 0)
+            specular += state_.lights[i].color_intensity *
+                        (source->highlighted * seen[i] * highlight(finish, lit.normal, source->toward, to_eye));
+    }
+    return specular;
+}
+
+bool World::light_meets(const Surface& surface, const Bvh& boxes) const {
+    const Surface lit = finished(surface, dvec3(state_.camera.world_from_camera[3])).surface;
+    const dvec3 from = off_surface(lit);
+    bool found = false;
+    const auto visit = [&](const dvec3& to) { found = found || meets_any(boxes, {from, to - from}); };
+    for (std::size_t i = 0; i < state_.lights.size() && !found; ++i)
+        if (const auto source = arriving(i, lit); source && scene().lights[i].shadows)
+            visit_shadow_rays(i, lit, source->toward, visit);
+    if (!found && scene().ambient != dvec3(0))
+        visit_ambient_rays(lit, [&](const dvec3& way) { visit(from + kFar_m * way); });
+    return found;
+}
+
+World::Finished World::finished(const Surface& surface, const dvec3& eye) const {
+    const Material& material = material_at(surface);
     const glm::dmat2 footprint = material.maps.any() ? uv_of_pixel(surface, eye) : glm::dmat2(0);
-    const Finish finish = finish_at(material, surface.uv, footprint);
-    Surface lit = surface;
-    if (material.maps.normal) lit.normal = mapped_normal(surface, material.maps, footprint);
-    Shading shading = light(lit, finish, &to_eye);
+    Finished result{surface, finish_at(material, surface.uv, footprint)};
+    if (material.maps.normal) result.surface.normal = mapped_normal(surface, material.maps, footprint);
+    return result;
+}
+
+Shading World::shade(const Surface& surface, const dvec3& eye, std::span<double> seen) const {
+    const dvec3 to_eye = glm::normalize(eye - surface.position);
+    const auto [lit, finish] = finished(surface, eye);
+    Shading shading = light(lit, finish, &to_eye, seen);
     shading.albedo = finish.albedo;
     shading.emission = finish.emission;
     shading.normal = lit.normal;

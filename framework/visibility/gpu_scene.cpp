@@ -47,7 +47,7 @@ GpuObject add_mesh(GpuScene& result, const scene::MeshTree& tree) {
     return object;
 }
 
-GpuGrid gpu_grid(const scene::ShadingGrids::Grid& grid, const glm::dmat4& view_from_object,
+GpuGrid gpu_grid(const scene::TriangleGrid& grid, const glm::dmat4& view_from_object,
                  const scene::Mesh& mesh, std::size_t triangle) {
     GpuGrid result;
     for (std::size_t i = 0; i < 3; ++i) {

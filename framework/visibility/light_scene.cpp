@@ -33,7 +33,7 @@ std::array<scene::Vertex, 3> corners_of(const Placed& placed, std::size_t triang
     return corners;
 }
 
-GpuSurface surface_of(const std::array<scene::Vertex, 3>& corners, const scene::ShadingGrids::Grid& grid,
+GpuSurface surface_of(const std::array<scene::Vertex, 3>& corners, const scene::TriangleGrid& grid,
                       std::size_t material) {
     const auto& [a, b, c] = corners;
     GpuSurface surface;
@@ -83,7 +83,7 @@ void add_object(LightScene& result, std::vector<GpuBlocker>& blockers, std::vect
     const double opacity = scene.material_of(int(index)).opacity;
     for (std::size_t i = 0; i < placed.mesh.triangles.size(); ++i) {
         const auto corners = corners_of(placed, i);
-        const scene::ShadingGrids::Grid& grid = grids.grids()[result.surfaces.size()];
+        const scene::TriangleGrid& grid = grids.grids()[result.surfaces.size()];
         const std::size_t material = scene.material_at(int(index), std::uint32_t(i));
         const GpuSurface& surface = result.surfaces.emplace_back(surface_of(corners, grid, material));
         result.starts.push_back(grid.start);

@@ -1,8 +1,8 @@
 """How far `decoupled` is from a renderer's lens, from its shutter and from both at once, what is hidden included, and what it costs;
 and how often `render --visibility` computes light: the figures and pictures of docs/quality-decoupled.md. Captures and truths are
-rendered once and kept in build/quality-decoupled. About 40 minutes.
+rendered once and kept in build/quality-decoupled. About an hour.
 
-    PARTS="suzanne both hidden triangles transparency times adaptive"   these alone; the others stay as they are
+    PARTS="suzanne both hidden triangles transparency times adaptive temporal"   these alone; the others stay as they are
     AFTERSHADE=FILE            another executable, and no build
     AFTERSHADE_CAPTURES=DIR    where suzanne lies (docs/measures.md)
 """
@@ -15,6 +15,7 @@ import numpy
 from PIL import Image
 
 from measure.decoupled_rates import on_triangles
+from measure.decoupled_temporal import over_frames
 from measure.decoupled_times import adaptive, in_time
 from measure.decoupled_transparency import on_transparent
 from measure.exr import RGB, read_exr
@@ -119,12 +120,12 @@ def hidden() -> Blocks:
 
 
 def main() -> None:
-    blocks = ["suzanne", "both", "hidden", "rates", "blur", "caches", "pictures", "transparency", "times", "sharp", "anisotropic"]
+    blocks = ["suzanne", "both", "hidden", "rates", "blur", "caches", "pictures", "transparency", "times", "sharp", "anisotropic", "kept", "kept-times"]
     page = Page("quality-decoupled.md", "scripts/quality decoupled", blocks)
     for folder in WORK, IMAGES:
         folder.mkdir(parents=True, exist_ok=True)
     page.make({"suzanne": on_suzanne, "both": both_at_once, "hidden": hidden, "triangles": lambda: on_triangles(IMAGES),
-               "transparency": lambda: on_transparent(IMAGES), "times": in_time, "adaptive": adaptive})
+               "transparency": lambda: on_transparent(IMAGES), "times": in_time, "adaptive": adaptive, "temporal": lambda: over_frames(IMAGES)})
 
 
 if __name__ == "__main__":

@@ -96,6 +96,18 @@ TEST_F(Render, ReportsTheShadingRateOfManyVisibilitySamples) {
     EXPECT_TRUE(fs::exists(folder_ / "toys/memoised_rate_0004.png"));
 }
 
+TEST_F(Render, ReportsTheShadingSamplesThatItKeepsFromFrameToFrame) {
+    const CommandResult made = render({scene("camera_checker"), "-o", "hall", "--size", "96x54", "--frames",
+                                       "1-2", "--truth-only", "--visibility", "memoised",
+                                       "--visibility-samples", "8", "--keep-shading", "--json", "--quiet"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const auto frames = nlohmann::json::parse(made.out).at("visibility");
+    EXPECT_EQ(frames.at(0).at("kept").at("samples"), 0);
+    EXPECT_GT(frames.at(1).at("kept").at("samples"), frames.at(1).at("misses"));
+    EXPECT_GT(frames.at(1).at("kept").at("highlights"), 0);
+    EXPECT_GT(frames.at(1).at("bytes").at("kept"), 0);
+}
+
 /// `toys` by GL's visibility at 64 samples, with so many threads of llvmpipe.
 nlohmann::json visibility_by_gl(const fs::path& folder, const std::string& threads, const Args& more) {
     Args words = {AFTERSHADE_EXECUTABLE,
@@ -194,6 +206,10 @@ TEST_F(Render, RefusesWaysOfTransparencyAndCachesThatDoNotFit) {
          "--visibility-on gl: error: is for --visibility memoised, supersampled or accumulation"},
         {{"--visibility", "memoised", "--visibility-on", "gl", "--shading-cache", "lru"},
          "--shading-cache lru: error: is for --visibility-on cpu; gl has fifo, in buckets of four entries"},
+        {{"--visibility", "memoised", "--keep-shading", "--visibility-on", "gl"},
+         "--keep-shading: error: is for --visibility-on cpu"},
+        {{"--visibility", "memoised", "--keep-shading", "--shading-cache", "tile"},
+         "--keep-shading: error: is for --shading-cache global"},
         {{"--visibility", "memoised", "--list-nodes", "9"},
          "--list-nodes: error: is for --transparency lists"},
         {{"--truth", "scattering"},
@@ -208,10 +224,11 @@ TEST_F(Render, RefusesWaysOfTransparencyAndCachesThatDoNotFit) {
 }
 
 TEST_F(Render, RefusesACacheWithoutShadingSamples) {
-    const CommandResult refused = render({scene("toys"), "-o", "toys", "--visibility", "supersampled",
-                                          "--shading-cache", "lru", "--anisotropic-shading"});
+    const CommandResult refused =
+        render({scene("toys"), "-o", "toys", "--visibility", "supersampled", "--shading-cache", "lru",
+                "--anisotropic-shading", "--keep-shading"});
     EXPECT_EQ(refused.exit_code, 2);
-    for (const char* option : {"--shading-cache", "--anisotropic-shading"})
+    for (const char* option : {"--shading-cache", "--anisotropic-shading", "--keep-shading"})
         EXPECT_NE(refused.err.find(std::string(option) + ": error: is for --visibility memoised"),
                   std::string::npos)
             << refused.err;
