@@ -19,7 +19,9 @@ std::string approve_command(const GoldenSetup& setup) {
 void print_approval(const GoldenApproval& approval) {
     for (const GoldenCaseResult& test : approval.cases)
         if (test.verdict != Verdict::same) {
-            std::cerr << fmt::format("\nFAILED {}: not approved, its goldens are as they were\n",
+            std::cerr << fmt::format(test.verdict == Verdict::warning
+                                         ? "\nWARNING {}: approved\n"
+                                         : "\nFAILED {}: not approved, its goldens are as they were\n",
                                      test.test->name);
             for (const std::string& message : test.messages)
                 std::cerr << "    " << printable_lines(message) << "\n";

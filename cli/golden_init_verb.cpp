@@ -183,7 +183,7 @@ ExitCode init(InitOptions options) {
     const GoldenSetup setup = prepare_golden(options.golden);
     const GoldenApproval approval = approve_first(options, setup);
     if (approval.interrupted) return ExitCode::interrupted;
-    if (approval.verdict != Verdict::same) {
+    if (approval.verdict > Verdict::warning) {
         for (const std::string& message : approval.cases.front().messages)
             std::cerr << printable_lines(message) << "\n";
         return ExitCode(int(approval.verdict));

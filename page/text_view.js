@@ -125,9 +125,9 @@ export class Faults {
     );
   }
   update() {
-    const { faults: all, steps } = this.store.state,
+    const { faults: all, steps, file_fault } = this.store.state,
       // That a look without steps does nothing, the list of steps says.
-      faults = this.store.hasFaults || steps.length ? all : [];
+      faults = this.store.hasFaults || steps.length || file_fault ? all : [];
     this.node.classList.toggle("only-warnings", !this.store.hasFaults);
     this.node.hidden = faults.length === 0;
     const signature = JSON.stringify(faults);

@@ -105,6 +105,8 @@ std::string difference_of_runs(const GoldenCase& test, const GoldenRenderOptions
     for (int run = 2; run <= runs && !interrupt; ++run) {
         const RenderedCase again = drawn(test, options, work / ("run" + std::to_string(run)), interrupt);
         if (interrupt) break;
+        if (again.verdict == Verdict::warning)
+            return fmt::format("run {} of {}: {}", run, runs, again.messages.front());
         if (again.images.size() != first.images.size())
             return fmt::format("run {} of {} did not draw", run, runs);
         if (const RenderedImage* image = first_difference(first, again))

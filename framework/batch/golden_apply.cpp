@@ -104,7 +104,7 @@ GoldenApplied apply_decisions(const GoldenSuite& suite, const std::vector<Golden
         GoldenApproval approval = approve_goldens(suite, approve, listener, interrupt);
         for (const GoldenCaseResult& test : approval.cases) {
             if (approval.interrupted) break;
-            if (test.verdict == Verdict::same && test.skipped.empty())
+            if (test.verdict <= Verdict::warning && test.skipped.empty())
                 result.applied.push_back(*cases.at(test.test->name));
             else if (!test.skipped.empty())
                 result.kept.push_back(test.test->name + ": is skipped: " + test.skipped);

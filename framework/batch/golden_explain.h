@@ -22,7 +22,7 @@ struct OriginChange {
 
 struct GoldenExplanation {
     GoldenImage image;                  ///< the first that differs; without a name all have the approved bits
-    std::vector<std::string> messages;  ///< of a case that does not render
+    std::vector<std::string> messages;  ///< of a case that does not render, or crashed once
     std::string step, effect;           ///< the first that differs; "" where that is not known
     std::vector<std::string> outputs;   ///< of the step, that differ
     std::size_t steps_before = 0;       ///< that gave the approved bits
@@ -32,7 +32,7 @@ struct GoldenExplanation {
 
     /// Whether nothing differs, or something is known that can have made the difference.
     bool is_explained() const {
-        return !causes.empty() || (image.name.empty() && image.verdict == Verdict::same);
+        return !causes.empty() || (image.name.empty() && image.verdict <= Verdict::warning);
     }
 };
 

@@ -235,6 +235,7 @@ void LookModel::save(const std::string& name) {
     saved_text_ = texts_[at_];
     saved_revision_ = revision_;
     is_gone_ = false;
+    file_fault_.clear();
 }
 
 void LookModel::follow_file() {
@@ -243,16 +244,10 @@ void LookModel::follow_file() {
     std::error_code failure;
     is_gone_ =
         std::filesystem::symlink_status(path_, failure).type() == std::filesystem::file_type::not_found;
-    if (texts_[at_] != saved_text_) return;
     std::string fault;
     std::string on_disk = read_regular_file(path_, kMaxDocumentBytes, fault);
-    if (is_gone_) fault.clear();
-    if (fault != file_fault_) {
-        file_fault_ = fault;
-        ++revision_;
-        bind();
-    }
-    if (is_gone_ || !fault.empty() || on_disk == saved_text_) return;
+    file_fault_ = is_gone_ ? "" : fault;
+    if (is_gone_ || !fault.empty() || texts_[at_] != saved_text_ || on_disk == saved_text_) return;
     saved_text_ = on_disk;
     Binding binding = binding_of(on_disk, Origin::disk);
     change(std::move(on_disk), std::move(binding));
@@ -263,6 +258,7 @@ nlohmann::ordered_json LookModel::revisions() const {
     return {{"revision", revision_},
             {"effects_revision", effects_revision_},
             {"saved_revision", saved_revision()},
+            {"file_fault", file_fault_},
             {"path", path_.string()}};
 }
 
@@ -345,13 +341,15 @@ nlohmann::ordered_json LookModel::state(const CaptureHeader& header) const {
     state["revision"] = revision_;
     state["effects_revision"] = effects_revision_;
     state["saved_revision"] = saved_revision();
+    state["file_fault"] = file_fault_;
     state["can_undo"] = at_ > 0;
     state["can_redo"] = at_ + 1 < texts_.size();
     state["text"] = texts_[at_];
     Diagnostics faults = faults_;
     if (!file_fault_.empty())
-        faults.warning({path_}, "changed on disk, and what is there was not taken over (" + file_fault_ +
-                                    "); the text is the one from before");
+        faults.warning({path_}, "what is on disk was not taken over: " + file_fault_ +
+                                    "; the text is the one read before (make the file a readable look of at "
+                                    "most 1 MiB)");
     state["faults"] = faults_json(faults);
     state["has_picture"] = bound_ != nullptr;
     state["is_capture_alone"] = bound_ && bound_->text == kNoSteps && texts_[at_] != kNoSteps;

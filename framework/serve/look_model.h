@@ -62,11 +62,11 @@ public:
     /// Counts a change of what the look is seen on.
     void capture_changed();
 
-    /// Takes over what another program wrote to the file, as one step of undo, faults and all. Nothing
-    /// happens where the text here is not saved. A file that cannot be read, or is longer than a look may be,
-    /// is a warning of the state. Where the file is gone, the text counts as not saved.
+    /// Takes over what another program wrote to the file, as one step of undo, faults and all, where the text
+    /// here is saved. A file that cannot be read, or is longer than a look may be, is a warning of the state.
+    /// Where the file is gone, the text counts as not saved.
     void follow_file();
-    /// {"revision", "effects_revision", "saved_revision", "path"}: whether a page has to read the state
+    /// {"revision", "effects_revision", "saved_revision", "file_fault", "path"}: whether a page has to read the state
     /// again.
     nlohmann::ordered_json revisions() const;
     /// Counts the changes of the text and of the effects.

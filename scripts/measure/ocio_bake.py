@@ -1,4 +1,4 @@
-"""Bakes views of a newer OpenColorIO's config into a config that OpenColorIO 2.1 reads, with a LUT for each view."""
+"""Bakes views of a newer OpenColorIO's config into a config that OpenColorIO 2.1 reads, with a LUT for each view transform."""
 import argparse
 import pathlib
 import sys
@@ -12,15 +12,15 @@ from measure.measures import Array
 Function = Callable[[Array], Array]
 POINTS = 65
 LOG_POINTS = 8192
-# What a shaper holds: stops above 1 at its end, and the light that its logarithm adds, of which the better one is taken.
+# What a shaper holds: stops above 1 at its end, and the light that its logarithm adds, of which the best one is taken.
 TOP_STOPS, TOES = 8.0, (3e-3, 4e-3, 6e-3)
 # Share of the logarithm beside the view's own curve of greys, which alone would leave bright colours too few points.
 LOG_SHARE = 0.45
 # And beside a density of points by how the view bends, along lines of one channel's light through the others'.
 BEND_SHARES, BEND_POINTS, BEND_LINES = (0.3, 0.4, 0.5), 257, 300
-# Colours that a cube is fitted to, the better shapers that it is tried with, and the steps towards the least squares.
+# Colours that a cube is fitted to, the number of best shapers that it is tried with, and the steps towards the least squares.
 FIT_COLORS, FIT_SHAPERS, FIT_STEPS = 2_000_000, 5, 8
-# Of the curve in which cubes hold light for a display of usual brightness; sRGB's own is 0.055.
+# Offset of the curve in which cubes hold light for a display of usual brightness; sRGB's own is 0.055.
 STRAIGHT_PART = 0.035
 # Displays as OpenColorIO 2.1 has them, so that the program finds the encoding for PNG.
 DISPLAYS = ["sRGB", "REC.1886-REC.709", "G2.2-REC.709", "G2.6-P3-D65", "REC.2100-PQ", "ST2084-P3-D65",
@@ -173,14 +173,25 @@ class Baker:
     def encoding_of(self, space: str) -> ocio.Transform | None:
         """What OpenColorIO 2.1 has for the display's numbers of CIE XYZ: a transform by name, or matrices and exponents."""
         greys = numpy.linspace(0.02, 1, 50)[:, None] * numpy.array([[1, 1, 1], [1, .6, .5], [.5, 1, .6], [.5, .6, 1]])[:, None]
+        expected = applied(self.source.getProcessor(space, "cie_xyz_d65_interchange"), greys)
         for name in DISPLAYS:
             style = f"DISPLAY - CIE-XYZ-D65_to_{name}"
             back = self.source.getProcessor(ocio.BuiltinTransform(style=style), ocio.TRANSFORM_DIR_INVERSE)
-            expected = applied(self.source.getProcessor(space, "cie_xyz_d65_interchange"), greys)
             if numpy.allclose(applied(back, greys), expected, rtol=1e-3, atol=1e-4):
                 return ocio.BuiltinTransform(style=style)
         steps = self.source.getProcessor("cie_xyz_d65_interchange", space).createGroupTransform()
         return steps if all(is_simple(step) for step in steps) else None
+
+    def is_in_two(self, display: str, view: str) -> bool:
+        """Whether a view is a view transform of ACES2065-1, then an encoding of CIE XYZ: without a look, and not over other
+        references."""
+        own = self.source.getViewTransform(self.source.getDisplayViewTransformName(display, view))
+        if own is None or self.source.getDisplayViewLooks(display, view):
+            return False
+        spaces = [self.source.getColorSpace(name) for name in ("ACES2065-1", "cie_xyz_d65_interchange")]
+        return own.getTransform(ocio.VIEWTRANSFORM_DIR_FROM_REFERENCE) is not None and all(
+            space and space.getTransform(direction) is None for space in spaces
+            for direction in (ocio.COLORSPACE_DIR_TO_REFERENCE, ocio.COLORSPACE_DIR_FROM_REFERENCE))
 
     def baked_steps(self, whole: ocio.Processor) -> ocio.GroupTransform:
         """From ACES2065-1: a shaper and a cube, whose files it writes, up to the last step that OpenColorIO 2.1 lacks; then the
@@ -246,8 +257,8 @@ class Baker:
 
     def add(self, display: str, view: str) -> None:
         transform, space = self.source.getDisplayViewTransformName(display, view), self.space_of(display, view)
-        encoding = self.encoding_of(space) if transform else None
-        if not encoding:
+        encoding = self.encoding_of(space) if self.is_in_two(display, view) else None
+        if encoding is None:
             whole = self.baked_steps(self.view(display, view))
             self.baked.addColorSpace(ocio.ColorSpace(name=f"{display}, {view}", fromReference=whole))
             self.baked.addDisplayView(display, view, f"{display}, {view}")

@@ -141,18 +141,22 @@ TEST_F(GoldenRun, CatchesAnOutputThatTheCaseDoesNotName) {
 
 TEST_F(GoldenRun, WarnsOfACrashThatDoesNotHappenTwice) {
     approve();
-    const auto crashing = [&](const std::string& name, const char* count) {
-        return run({"--filter", "corner"}, {{"CRASHES", (folder_ / name).string()},
-                                            {"COUNT", count},
-                                            {"LD_PRELOAD", AFTERSHADE_CASES "/preload/crashes_few.so"}});
+    const auto crashing = [&](const std::string& verb, const std::string& name, const char* count) {
+        return golden({verb, "golden.json", "--filter", "corner"},
+                      {{"CRASHES", (folder_ / name).string()},
+                       {"COUNT", count},
+                       {"LD_PRELOAD", AFTERSHADE_CASES "/preload/crashes_few.so"}});
     };
-    const CommandResult once = crashing("once", "1");
+    const CommandResult once = crashing("run", "once", "1");
     EXPECT_EQ(once.exit_code, 1) << once.err;
     EXPECT_NE(once.err.find("rendering: the worker crashed (signal 11, SIGSEGV); it was run once more"),
               std::string::npos)
         << once.err;
     EXPECT_NE(once.err.find("0 passed, 1 with warnings, 0 failed"), std::string::npos) << once.err;
-    const CommandResult twice = crashing("twice", "2");
+    const CommandResult approval = crashing("approve", "approval", "1");
+    EXPECT_EQ(approval.exit_code, 1) << approval.err;
+    EXPECT_NE(approval.err.find("WARNING corner: approved\n"), std::string::npos) << approval.err;
+    const CommandResult twice = crashing("run", "twice", "2");
     EXPECT_EQ(twice.exit_code, 2) << twice.err;
     EXPECT_NE(twice.err.find("rendering: the worker crashed (signal 11, SIGSEGV)\n"), std::string::npos)
         << twice.err;

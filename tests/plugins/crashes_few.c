@@ -1,4 +1,4 @@
-/* For LD_PRELOAD: crashes each run of a case for which it can make one of the files CRASHES.1 to CRASHES.COUNT. */
+/* For LD_PRELOAD: crashes each run of a case for which it can make a file CRASHES.1 to CRASHES.COUNT. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -27,12 +27,14 @@ const char* const kManifest = R"(
       "gains": { "type": "table", "doc": ".", "columns": {
           "gain": { "type": "float", "default": 1, "doc": "." } } },
       "lift": { "type": "float", "default": 0, "doc": "." },
+      "bend": { "type": "float", "default": 1, "identity": 1, "doc": "." },
       "tone": { "type": "curve", "default": [[0, 0], [1, 1]], "doc": "." } },
     "textures": { "work": { "format": "r32f", "clear": 0, "doc": "." } },
     "passes": [
       { "name": "soften", "shader": "soften.frag", "writes": ["work"], "repeat": "turns",
         "when": { "mode": "soft", "really": true } },
       { "name": "lift", "shader": "lift.frag", "writes": ["work"], "when": { "nonzero.lift": true } },
+      { "name": "bend", "shader": "bend.frag", "writes": ["work"], "when": { "changes.bend": true } },
       { "name": "main", "shader": "main.frag", "reads": ["color", "object_id", "depth", "work"],
         "writes": ["color"] } ])";
 const char* const kMain = R"(
@@ -60,6 +62,8 @@ protected:
                    std::string(kShaderHead) + "void main() { out_work = float(pass.count); }\n");
         write_text(effects_.path() / "shaped/lift.frag",
                    std::string(kShaderHead) + "void main() { out_work = param.lift; }\n");
+        write_text(effects_.path() / "shaped/bend.frag",
+                   std::string(kShaderHead) + "void main() { out_work = param.bend; }\n");
     }
 
     static Capture capture_of(int number) {
@@ -128,6 +132,11 @@ TEST_F(GraphKeys, KnowOfANumberOnlyWhetherItIs0WhereNothingElseIsAsked) {
     const auto work = [&](int frame) { return bench.run(capture_of(frame)).images.at("color").floats()[1]; };
     EXPECT_EQ(work(1), 0);
     EXPECT_EQ(work(9), 0.5f);
+}
+
+TEST_F(GraphKeys, KnowOfAParameterOnlyWhetherItIsAtItsIdentityWhereNothingElseIsAsked) {
+    EXPECT_EQ(graphs_of(keyed("bend", "1", "2")), 2);
+    EXPECT_EQ(graphs_of(keyed("bend", "3", "2")), 1) << "the pass has a uniform for it";
 }
 
 TEST_F(GraphKeys, KnowTheImagesThatSomeStepMayTake) {

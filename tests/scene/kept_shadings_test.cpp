@@ -99,6 +99,17 @@ TEST(KeptShadings, OfASceneAtRestGiveTheBitsOfLightComputedForEveryFrame) {
     }
 }
 
+TEST(KeptShadings, OfTexturesAndNormalMapsAtRestGiveTheBitsOfLightComputedForEveryFrame) {
+    Scene urn = shipped_scene("urn");
+    urn.width_px = 96;
+    urn.height_px = 54;
+    const Pictures fresh = pictures_of(urn, 3, with_samples(8), false),
+                   kept = pictures_of(urn, 3, with_samples(8), true);
+    for (std::size_t i = 0; i < fresh.size(); ++i) EXPECT_TRUE(are_same(fresh[i], kept[i])) << i;
+    EXPECT_GT(kept[1].report.kept, 1000u);
+    EXPECT_GT(kept[1].report.highlights, 100u);
+}
+
 TEST(KeptShadings, GoWhereSomethingMovesAndWhereItsShadowWasOrIs) {
     // The second ball stays outside the picture, which has its shadow alone.
     for (const char* ball : {R"({ "shape": "sphere", "radius": 0.2, "material": "clay",

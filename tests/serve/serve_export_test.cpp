@@ -1,8 +1,8 @@
 // Frames that the page has written: images and videos, whole or not at all.
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -126,18 +126,16 @@ TEST_F(ServeExportWithGaps, LeavesOutNumbersWithoutAFrameAsThePageDoes) {
 TEST_F(ServeExport, GivesEveryStillBesideThePicturesOfAViewer) {
     start();
     const std::string still = get("/api/picture?frame=1&format=png").body;
-    std::atomic<bool> ends = false;
     std::vector<std::jthread> viewers;
     for (int i = 0; i < 2; ++i)
-        viewers.emplace_back([&] {
-            while (!ends) get("/api/picture?frame=1");
+        viewers.emplace_back([&](const std::stop_token& stop) {
+            while (!stop.stop_requested()) get("/api/picture?frame=1");
         });
     for (int i = 0; i < 30; ++i) {
         const Answer answer = get("/api/picture?frame=1&format=png");
         EXPECT_EQ(answer.status, 200) << answer.body;
         EXPECT_TRUE(answer.body == still) << i;
     }
-    ends = true;
 }
 
 TEST_F(ServeExport, GivesTheStillAsTheFileThatItWrites) {
