@@ -1,7 +1,6 @@
 #include "framework/scene/kept_shadings.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "framework/base/parallel.h"
@@ -115,7 +114,7 @@ KeptShadings::Lit KeptShadings::light(const SceneRenderer& renderer, const Shadi
         }
         lit.light[i] = sample.shading.color();
     });
-    lit.highlights = std::accumulate(has_highlight.begin(), has_highlight.end(), std::uint64_t(0));
+    lit.highlight_count = std::uint64_t(std::ranges::count(has_highlight, 1));
     return lit;
 }
 

@@ -26,9 +26,9 @@ public:
     ShadingGrids next_frame(const SceneRenderer& renderer, int frame, const ShadingGridSettings& settings);
 
     struct Lit {
-        std::vector<glm::dvec3> light;  ///< of each id
-        std::vector<char> is_new;       ///< whether it was computed now
-        std::uint64_t highlights = 0;   ///< of kept samples
+        std::vector<glm::dvec3> light;      ///< of each id
+        std::vector<char> is_new;           ///< whether it was computed now
+        std::uint64_t highlight_count = 0;  ///< of kept samples
     };
     /// `ids` are distinct, and `grids` are those of this frame.
     Lit light(const SceneRenderer& renderer, const ShadingGrids& grids, std::span<const std::uint32_t> ids);

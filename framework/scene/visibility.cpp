@@ -192,7 +192,7 @@ VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGr
         picture.color = blend(renderer, lit.light, addresses, lists);
         replayed.of_pixel = shadings_of_pixels(addresses, lit.is_new);
         report.kept = std::uint64_t(std::ranges::count(lit.is_new, 0));
-        report.highlights = lit.highlights;
+        report.highlights = lit.highlight_count;
         report.bytes.kept = kept->bytes();
     } else {
         picture.color = lists ? blend(renderer, shade_all(renderer, grids, replayed.ids), addresses, lists)

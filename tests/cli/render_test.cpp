@@ -103,7 +103,7 @@ TEST_F(Render, ReportsTheShadingSamplesThatItKeepsFromFrameToFrame) {
     ASSERT_EQ(made.exit_code, 0) << made.err;
     const auto frames = nlohmann::json::parse(made.out).at("visibility");
     EXPECT_EQ(frames.at(0).at("kept").at("samples"), 0);
-    EXPECT_GT(frames.at(1).at("kept").at("samples"), frames.at(1).at("misses"));
+    EXPECT_GT(frames.at(1).at("kept").at("samples"), 1000);
     EXPECT_GT(frames.at(1).at("kept").at("highlights"), 0);
     EXPECT_GT(frames.at(1).at("bytes").at("kept"), 0);
 }
