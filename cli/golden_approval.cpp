@@ -19,10 +19,9 @@ std::string approve_command(const GoldenSetup& setup) {
 void print_approval(const GoldenApproval& approval) {
     for (const GoldenCaseResult& test : approval.cases)
         if (test.verdict != Verdict::same) {
-            std::cerr << fmt::format(test.verdict == Verdict::warning
-                                         ? "\nWARNING {}: approved\n"
-                                         : "\nFAILED {}: not approved, its goldens are as they were\n",
-                                     test.test->name);
+            const bool is_approved = test.verdict == Verdict::warning;
+            std::cerr << fmt::format("\n{} {}: {}\n", is_approved ? "WARNING" : "FAILED", test.test->name,
+                                     is_approved ? "approved" : "not approved, its goldens are as they were");
             for (const std::string& message : test.messages)
                 std::cerr << "    " << printable_lines(message) << "\n";
         }

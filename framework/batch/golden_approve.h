@@ -30,9 +30,10 @@ struct GoldenApproval {
     std::vector<std::filesystem::path> renewed;   ///< sidecars alone
     std::vector<std::filesystem::path> outdated;  ///< approved by other renderers, of another look or effects
     std::size_t unchanged = 0;                    ///< images whose bits are approved already
-    std::vector<GoldenCaseResult> cases;  ///< with verdict and messages of those that keep their goldens or crashed once
-    Verdict verdict = Verdict::same;      ///< the worst
-    bool interrupted = false;             ///< then nothing was written
+    std::vector<GoldenCaseResult>
+        cases;  ///< with verdict and messages of those that keep their goldens or crashed once
+    Verdict verdict = Verdict::same;  ///< the worst
+    bool interrupted = false;         ///< then nothing was written
 };
 
 /// "" where the cases' goldens are of the kind of renderer of `environment`, software or hardware, or have no

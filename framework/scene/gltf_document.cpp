@@ -33,7 +33,7 @@ bool read_whole_file(std::vector<unsigned char>* bytes, std::string* error, cons
                      void* folder) {
     std::string fault = out_of_bounds(path, *static_cast<const std::string*>(folder));
     const std::string text = fault.empty() ? read_regular_file(path, kMaxGltfBytes, fault) : "";
-    if (!fault.empty()) fault = path + " " + fault;
+    if (!fault.empty()) fault = path + ": " + fault;
     bytes->assign(text.begin(), text.end());
     if (!fault.empty() && error) *error += fault;
     return fault.empty();

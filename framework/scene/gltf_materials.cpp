@@ -118,20 +118,19 @@ private:
     }
 
     const Image& stored_image(int index) {
-        const auto [entry, is_new] = images_.try_emplace(index);
-        if (is_new) {
-            const std::string name = fmt::format("{}: image {}", path_.string(), index);
-            try {
-                entry->second = decode_picture(name, bytes_of(index));
-            } catch (const Error& error) {
-                if (error.kind() == ErrorKind::usage) throw;
-                throw Error(ErrorKind::usage, error.what());
-            }
+        if (index == last_index_) return last_image_;
+        const std::string name = fmt::format("{}: image {}", path_.string(), index);
+        try {
+            last_image_ = decode_picture(name, bytes_of(index));
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::usage) throw;
+            throw Error(ErrorKind::usage, error.what());
         }
-        return entry->second;
+        last_index_ = index;
+        return last_image_;
     }
 
-    /// tinygltf checks no bounds of a bufferView with an image.
+    /// tinygltf checks no bounds of a bufferView with an image, and not every version checks the indices.
     std::string_view bytes_of(int index) const {
         const tinygltf::Image& image = model_.images[std::size_t(index)];
         const auto text = [](const std::vector<unsigned char>& bytes, std::size_t at, std::size_t count) {
@@ -141,6 +140,8 @@ private:
             fail_gltf(path_, fmt::format("image {} {}", index, what));
         };
         if (image.bufferView == -1) {
+            if (image.image.empty() && image.uri.starts_with("data:"))
+                image_fault("is a data URI of a type that is not read; save it as image/png or image/jpeg");
             if (image.image.empty())
                 image_fault(fmt::format("'{}': {}", image.uri, gltf_file_fault(path_, image.uri)));
             return text(image.image, 0, image.image.size());
@@ -164,7 +165,8 @@ private:
     const tinygltf::Model& model_;
     std::vector<std::string>& warnings_;
     std::string place_;
-    std::map<int, Image> images_;
+    int last_index_ = -1;
+    Image last_image_;  // one alone: as floats it has up to 16 bytes a texel
     std::map<Key, MaterialMaps::Map> made_;
     std::size_t texels_ = 0;
 };
@@ -175,7 +177,13 @@ std::vector<Material> gltf_materials(const fs::path& path, const tinygltf::Model
                                      std::vector<std::string>& warnings) {
     MaterialReader reader(path, model, warnings);
     std::vector<Material> materials;
-    for (std::size_t i = 0; i < model.materials.size(); ++i) materials.push_back(reader.read(i));
+    std::vector<bool> is_used(model.materials.size());
+    for (const tinygltf::Mesh& mesh : model.meshes)
+        for (const tinygltf::Primitive& primitive : mesh.primitives)
+            if (primitive.material >= 0 && std::size_t(primitive.material) < is_used.size())
+                is_used[std::size_t(primitive.material)] = true;
+    for (std::size_t i = 0; i < model.materials.size(); ++i)
+        materials.push_back(is_used[i] ? reader.read(i) : Material());
     return materials;
 }
 

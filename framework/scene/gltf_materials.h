@@ -10,7 +10,8 @@
 
 namespace aftershade::scene {
 
-/// Of a model with its images. Throws as read_gltf_model() does.
+/// Materials of a model that was loaded with its images; those that no triangle has stay unread. Throws as
+/// read_gltf_model() does.
 std::vector<Material> gltf_materials(const std::filesystem::path& path, const tinygltf::Model& model,
                                      std::vector<std::string>& warnings);
 

@@ -25,7 +25,7 @@ struct Bounds {
     }
 };
 
-/// Around the corners of a box elsewhere.
+/// Bounds of a box's corners after `matrix`.
 Bounds transformed(const Bounds& bounds, const glm::dmat4& matrix);
 
 struct Vertex {
@@ -38,7 +38,7 @@ struct Vertex {
 struct Mesh {
     std::vector<Vertex> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
-    /// Of each triangle, where its file says so: index into the file's, or the scene's, materials; -1: none.
+    /// Materials of the triangles, where the file has them: indices into the file's or the scene's; -1: none.
     std::vector<int> materials = {};
     /// Of each vertex: the direction of growing u in the normal's plane, unit length; w: the sign of the
     /// bitangent, w * cross(normal, tangent). Length 0: none. Empty without a normal map.

@@ -39,7 +39,7 @@ struct Object {
     Shape shape;
     int parent = -1;  ///< index into Scene::objects, always an earlier one
     int material = 0;
-    bool has_mesh_materials = false;  ///< its triangles' are those of the mesh, and `material` the rest's
+    bool has_mesh_materials = false;  ///< triangles have the mesh's; those without one have `material`
     Animated<glm::dvec3> position_m{glm::dvec3(0)};
     Animated<glm::dvec3> rotation_deg{glm::dvec3(0)};  ///< about x, then y, then z
     Animated<glm::dvec3> scale{glm::dvec3(1)};

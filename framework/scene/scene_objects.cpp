@@ -79,7 +79,10 @@ void SceneReader::read_object(const grammar::Reader& reader) {
     object.material = find_name(reader, "material", "material", materials_).value_or(-1);
     const bool is_mesh = object.shape.kind == ShapeKind::mesh;
     object.has_mesh_materials = is_mesh && !reader.has("material");
-    if (!reader.node().find("material") && object.shape.kind != ShapeKind::group && !is_mesh &&
+    // A height field has no file that gives it materials. A mesh that is not there has its own error.
+    const bool has_file = is_mesh && (object.shape.mesh < 0 ||
+                                      !scene_.meshes[std::size_t(object.shape.mesh)].materials.empty());
+    if (!reader.node().find("material") && object.shape.kind != ShapeKind::group && !has_file &&
         !materials_.empty())
         diagnostics_.error(object.place, place + " has no material");
     object.parent = find_name(reader, "parent", "earlier object", objects_).value_or(-1);

@@ -226,8 +226,9 @@ dvec3 World::highlights(const Surface& surface, const dvec3& eye, std::span<cons
         if (seen[i] <= 0) continue;
         const auto source = arriving(i, lit);
         if (source && source->highlighted * seen[i] > 0)
-            specular += state_.lights[i].color_intensity *
-                        (source->highlighted * seen[i] * highlight(finish, lit.normal, source->toward, to_eye));
+            specular +=
+                state_.lights[i].color_intensity *
+                (source->highlighted * seen[i] * highlight(finish, lit.normal, source->toward, to_eye));
     }
     return specular;
 }

@@ -14,7 +14,7 @@ using glm::dvec4;
 
 namespace {
 
-/// Of the view with the normal, where the surface is seen along itself.
+/// The least cosine between view and normal. At 0 the footprint would be infinite.
 constexpr double kLeastCosine = 1e-3;
 
 }  // namespace
@@ -46,7 +46,8 @@ dmat2 World::uv_of_pixel(const Surface& surface, const dvec3& eye) const {
     return result;
 }
 
-/// As MikkTSpace's shaders do it, in world space. A back has the front's normal, reversed (glTF 2.0, 3.9.4).
+/// In world space. The tangent is made perpendicular to the normal and of unit length at each point, which
+/// MikkTSpace's shaders do not do. A back has the front's normal, reversed (glTF 2.0, 3.9.5).
 dvec3 World::mapped_normal(const Surface& surface, const MaterialMaps& maps, const dmat2& footprint) const {
     const dvec3 texel = maps.normal->at(surface.uv, footprint);
     const Seen& seen = seen_[std::size_t(seen_of_object_[std::size_t(surface.object)])];

@@ -66,8 +66,8 @@ public:
     /// here is saved. A file that cannot be read, or is longer than a look may be, is a warning of the state.
     /// Where the file is gone, the text counts as not saved.
     void follow_file();
-    /// {"revision", "effects_revision", "saved_revision", "file_fault", "path"}: whether a page has to read the state
-    /// again.
+    /// {"revision", "effects_revision", "saved_revision", "file_fault", "path"}: whether a page has to read
+    /// the state again.
     nlohmann::ordered_json revisions() const;
     /// Counts the changes of the text and of the effects.
     std::uint64_t revision() const;

@@ -47,8 +47,8 @@ GpuObject add_mesh(GpuScene& result, const scene::MeshTree& tree) {
     return object;
 }
 
-GpuGrid gpu_grid(const scene::TriangleGrid& grid, const glm::dmat4& view_from_object,
-                 const scene::Mesh& mesh, std::size_t triangle) {
+GpuGrid gpu_grid(const scene::TriangleGrid& grid, const glm::dmat4& view_from_object, const scene::Mesh& mesh,
+                 std::size_t triangle) {
     GpuGrid result;
     for (std::size_t i = 0; i < 3; ++i) {
         const dvec3& corner = mesh.vertices[mesh.triangles[triangle][i]].position;
@@ -95,8 +95,11 @@ GpuScene make_gpu_scene(const scene::SceneRenderer& renderer) {
     check_triangle_count(scene);
     GpuScene result;
     std::vector<GpuObject> of_mesh;
+    std::vector<bool> is_used(scene.meshes.size());
+    for (const scene::Object& object : scene.objects)
+        if (object.shape.mesh >= 0) is_used[std::size_t(object.shape.mesh)] = true;
     for (std::size_t i = 0; i < scene.meshes.size(); ++i)
-        of_mesh.push_back(add_mesh(result, renderer.geometry().mesh(i)));
+        of_mesh.push_back(is_used[i] ? add_mesh(result, renderer.geometry().mesh(i)) : GpuObject());
     std::uint32_t surfaces = 0;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         const scene::Object& from = scene.objects[i];

@@ -48,7 +48,7 @@ float light_through(vec3 origin, vec3 direction, float high) {
     return share;
 }
 
-// World::uv_of_pixel(). The triangle is in the object's space, `normal` and `view`, of depth 1, are in the world; `rows`: those of
+// World::uv_of_pixel(), but with the camera at the frame's own time. The triangle is in the object's space, `normal` and `view`, of depth 1, are in the world; `rows`: those of
 // object_from_world.
 mat2 uv_of_pixel(vec3 ab, vec3 ac, vec2 ab_uv, vec2 ac_uv, mat3 rows, vec3 normal, vec3 view, float width) {
     float along = min(dot(normal, view), -1e-3 * length(view));

@@ -63,7 +63,8 @@ vec3 blended(Map map, int level, vec2 uv) {
 vec3 map_at(uint index, vec2 uv, mat2 uv_of_pixel) {
     ivec2 size = ivec2(textures[index], textures[index + 1u]);
     Map map = Map(index + 4u, size, int(textures[index + 2u]), textures[index + 3u]);
-    mat2 sides = mat2(uv_of_pixel[0] * vec2(size), uv_of_pixel[1] * vec2(size));
+    // Squares of more would be infinite in single precision.
+    mat2 sides = mat2(clamp(uv_of_pixel[0] * vec2(size), -1e9, 1e9), clamp(uv_of_pixel[1] * vec2(size), -1e9, 1e9));
     float a = sides[0].x * sides[0].x + sides[1].x * sides[1].x, b = sides[0].x * sides[0].y + sides[1].x * sides[1].y;
     float c = sides[0].y * sides[0].y + sides[1].y * sides[1].y, middle = 0.5 * (a - c), apart = sqrt(middle * middle + b * b);
     float longer = sqrt(0.5 * (a + c) + apart), shorter = longer > 0.0 ? abs(determinant(sides)) / longer : 0.0;

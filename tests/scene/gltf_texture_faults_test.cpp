@@ -40,7 +40,7 @@ const TextureFault kTextureFaults[] = {
     {R"("normalTexture": {"index": 7})", "",
      "material 0 'paint': normalTexture is texture 7, the file has 1"},
     {R"("normalTexture": {"index": 0})", R"({"uri": "not%20there.png"})",
-     "/not there.png no such file (put it there, or give the object a \"material\" of the scene)"},
+     "/not there.png: no such file (put it there, or give the object a \"material\" of the scene)"},
     {R"("normalTexture": {"index": 0, "scale": 1e300})", "",
      "normalTexture.scale is 1e+300, not -1000 to 1000"},
     {R"("normalTexture": {"index": 0})", R"({"uri": "../outside.png"})", "leads out of the folder"},

@@ -10,6 +10,7 @@
 #include "framework/scene/visibility.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/scene/scene_text.h"
+#include "tests/scene/textured_file.h"
 
 namespace aftershade::visibility {
 namespace {
@@ -68,6 +69,29 @@ TEST_P(LightOn, LightsTexturesAndNormalMapsAsTheCpuDoes) {
     // The highlights of the urn's gold are narrow, and the last digits of the normal map move them.
     const Pictures both = pictures(context(), scene::shipped_scene("urn"), 4, 1);
     EXPECT_LT(other_pixels(both), 0.004);
+}
+
+TEST_P(LightOn, WrapsTexturesAndScalesMapsAsTheCpuDoes) {
+    using namespace scene::test;
+    const auto texel = [](int x, int y) { return glm::ivec3(90 + 60 * x, 80 + 50 * y, 200); };
+    const std::string material =
+        R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.5},
+        "normalTexture": {"index": 0, "scale": 0.5}, "occlusionTexture": {"index": 0, "strength": 0.5})";
+    const std::string light =
+        R"("ambient": 0.3, "lights": [{ "type": "directional", "position": [1, 2, 3] }],)";
+    for (const char* sampler :
+         {R"("wrapS": 33648, "wrapT": 33071)", R"("wrapS": 33071, "wrapT": 33648, "magFilter": 9728)"}) {
+        const TemporaryFolder folder;
+        write_text(folder / "model.gltf",
+                   textured_quad(material, {.sampler = sampler,
+                                            .uv_low = {-1, -1},
+                                            .uv_high = {2, 2},
+                                            .tangents = {0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1, 0, 1, 0, -1},
+                                            .pictures = {png_of(3, 3, texel)}})
+                       .text());
+        const scene::Scene quad = quad_scene(folder.path(), 64, light);
+        EXPECT_LT(other_pixels(pictures(context(), quad, 1, 1, kMaxBufferBytes, {64, 64})), 0.01) << sampler;
+    }
 }
 
 TEST_P(LightOn, RefusesTexturesThatNoBufferHolds) {
