@@ -1,6 +1,7 @@
 // A small scene as a document: shapes, materials, lights, a camera with lens and shutter, and how they move.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>

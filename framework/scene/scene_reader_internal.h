@@ -1,6 +1,7 @@
 // Takes a scene document apart; for the sources of this folder.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
