@@ -6,6 +6,7 @@
 
 #include "cli/capture_options.h"
 #include "cli/effect_options.h"
+#include "cli/gl_options.h"
 #include "framework/base/data_path.h"
 #include "framework/base/scratch_folder.h"
 #include "framework/base/status.h"

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "cli/compare_options.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/input_files.h"
 #include "framework/batch/golden_comment.h"

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/compare_options.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "framework/base/atomic_file.h"

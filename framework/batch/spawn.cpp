@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "framework/base/status.h"
+
 namespace aftershade {
 
 namespace {
