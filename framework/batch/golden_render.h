@@ -34,7 +34,7 @@ struct RenderedCase {
     /// written.
     Verdict verdict = Verdict::same;
     std::string absent;  ///< what is not there, so that an optional case is skipped; "" otherwise
-    /// Of the worker: that it crashed first, warnings, and everything where it failed.
+    /// What the worker said: that it crashed first, its warnings, and everything if it failed.
     std::vector<std::string> messages;
     std::vector<RenderedImage> images;  ///< every output and tap of every frame; none after a failure
     std::string command;                ///< for a shell

@@ -40,7 +40,7 @@ struct Mesh {
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
     /// Materials of the triangles, where the file has them: indices into the file's or the scene's; -1: none.
     std::vector<int> materials = {};
-    /// Of each vertex: the direction of growing u in the normal's plane, unit length; w: the sign of the
+    /// Each vertex's direction of growing u in the normal's plane, unit length; w: the sign of the
     /// bitangent, w * cross(normal, tangent). Length 0: none. Empty without a normal map.
     std::vector<glm::dvec4> tangents = {};
     Bounds bounds() const;

@@ -76,7 +76,7 @@ double folded(TextureWrap wrap, double u) {
     return turn > 1 ? 2 - turn : turn;
 }
 
-/// Of a texel at most one outside.
+/// The texel that stands for one at most one outside.
 int inside(TextureWrap wrap, int at, int side) {
     if (wrap != TextureWrap::repeat) return std::clamp(at, 0, side - 1);
     return at < 0 ? side - 1 : at >= side ? 0 : at;
@@ -89,8 +89,8 @@ struct Footprint {
     double shorter = 0;
 };
 
-/// Of the parallelogram with these two sides: the singular values of the matrix, and the direction of the
-/// first.
+/// The ellipse of the parallelogram with these two sides: the matrix's singular values, and the direction of
+/// the first.
 Footprint footprint_of(const glm::dmat2& sides) {
     const double a = sides[0].x * sides[0].x + sides[1].x * sides[1].x,
                  b = sides[0].x * sides[0].y + sides[1].x * sides[1].y,

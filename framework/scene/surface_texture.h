@@ -42,7 +42,7 @@ public:
         std::size_t first = 0;  ///< index into texels()
     };
     const std::vector<Level>& levels() const { return levels_; }
-    /// Of all levels, the finest first; red in the lowest byte, then green and blue.
+    /// The texels of all levels, the finest first; red in the lowest byte, then green and blue.
     const std::vector<std::uint32_t>& texels() const { return texels_; }
     TexelValues values() const { return values_; }
     const TextureSampling& sampling() const { return sampling_; }

@@ -109,7 +109,7 @@ public:
     glm::dvec3 highlights(const Surface& surface, const glm::dvec3& eye, std::span<const double> seen) const;
     /// Whether any ray that shade() sends from the surface meets one of the boxes. The same of `uv_of_pixel`.
     bool light_meets(const Surface& surface, const Bvh& boxes) const;
-    /// Of an object, in world space; empty where there is nothing to see of it.
+    /// An object's bounds in world space; empty where there is nothing to see of it.
     Bounds bounds(int object) const;
     const Material& material_at(const Surface& surface) const {
         return scene().materials[scene().material_at(surface.object, surface.triangle)];

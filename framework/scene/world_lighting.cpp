@@ -111,8 +111,8 @@ bool meets_any(const Bvh& boxes, const Ray& ray) {
 
 }  // namespace
 
-/// Of an area light: a grid of its points. Points below the surface's horizon do not count, since
-/// polygon_cosine cuts them off; where all are, the highest corner stands for the rest.
+/// An area light has a ray to each point of a grid on it. Points below the surface's horizon do not count,
+/// since polygon_cosine cuts them off; where all are, the highest corner stands for the rest.
 template <class Visit>
 void World::visit_shadow_rays(std::size_t index, const Surface& surface, const dvec3& toward,
                               const Visit& visit) const {

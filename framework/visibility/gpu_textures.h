@@ -22,8 +22,8 @@ struct GpuMaterial {
 
 struct GpuMaterials {
     std::vector<GpuMaterial> materials;
-    /// Of each texture: width, height, number of levels, how it repeats and what its texels stand for; then
-    /// the texels of its levels as scene::SurfaceTexture::texels().
+    /// For each texture its width, height, number of levels, how it repeats and what its texels stand for;
+    /// then the texels of its levels as scene::SurfaceTexture::texels().
     std::vector<std::uint32_t> textures;
 };
 

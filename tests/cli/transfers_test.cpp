@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/batch/process_codes.h"
 #include "tests/backends.h"
 #include "tests/cli/batch_work.h"
 

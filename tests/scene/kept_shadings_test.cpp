@@ -12,15 +12,10 @@
 #include "framework/scene/triangulate.h"
 #include "framework/scene/visibility.h"
 #include "tests/scene/scene_text.h"
+#include "tests/scene/with_samples.h"
 
 namespace aftershade::scene {
 namespace {
-
-VisibilitySettings with_samples(int samples) {
-    VisibilitySettings settings;
-    settings.samples = samples;
-    return settings;
-}
 
 using Pictures = std::vector<VisibilityPicture>;
 

@@ -85,7 +85,7 @@ inline Scene quad_scene(const std::filesystem::path& folder, int side_px, const 
     return std::move(*scene);
 }
 
-/// Of a file's bytes as model.gltf.
+/// What the quad's scene gives with these bytes as model.gltf.
 inline Capture capture_of(const std::string& model, int side_px, const std::string& more = "",
                           const std::string& object = "") {
     const TemporaryFolder folder;

@@ -17,15 +17,10 @@
 #include "framework/base/error.h"
 #include "framework/scene/triangulate.h"
 #include "tests/scene/scene_text.h"
+#include "tests/scene/with_samples.h"
 
 namespace aftershade::scene {
 namespace {
-
-VisibilitySettings with_samples(int samples) {
-    VisibilitySettings settings;
-    settings.samples = samples;
-    return settings;
-}
 
 VisibilityPicture picture_of(const Scene& scene, int frame, const VisibilitySettings& settings,
                              int threads = 2) {
