@@ -116,7 +116,7 @@ void note_averaged_depth(const Image& depth, Inspection& inspection) {
 void note_deep_reduction(const CaptureReader& reader, Inspection& inspection) {
     if (!inspection.capture || inspection.capture->layer_roles.empty()) return;
     try {
-        const std::vector<std::string> roles = {inspection.capture->layer_roles.back()};
+        const std::vector<RoleId> roles = {inspection.capture->layer_roles.back()};
         const Capture capture = reader.read(inspection.capture->frame, roles);
         if (capture.deep) inspection.capture->notes.push_back(capture.deep->text(capture.deep_layers));
     } catch (const Error&) {
@@ -255,7 +255,7 @@ Capture read_role_by_role(const CaptureHeader& header, const CaptureReader& read
 void write_contact_sheet(const std::string& path, const CaptureHeader& header, const CaptureReader& reader) {
     Capture capture;
     std::map<std::string, std::string> unreadable;
-    std::vector<std::string> roles = header.roles;
+    std::vector<RoleId> roles = role_ids(header.roles);
     roles.insert(roles.end(), header.layer_roles.begin(), header.layer_roles.end());
     try {
         capture = reader.read(header.frame, roles);

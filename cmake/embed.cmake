@@ -28,8 +28,6 @@ if(CMAKE_SCRIPT_MODE_FILE)
 
 namespace aftershade {
 
-std::string_view ${NAME}();
-
 std::string_view ${NAME}() {
     static constexpr std::string_view text =
 ${LITERALS}    ;

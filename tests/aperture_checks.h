@@ -216,8 +216,8 @@ inline Capture near_box_with_what_it_hides() {
             depth.at(x, y, 0) = x >= 30 && x < 64 ? kApertureFocusM : kApertureFarM;
             for (int c = 0; c < 4 && x >= 30 && x < 64; ++c) color.at(x, y, c) = c == 3 ? 1 : kApertureDark;
         }
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "depth")] = std::move(depth);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(color);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(depth);
     return capture;
 }
 
@@ -240,10 +240,10 @@ inline Capture wire_of_two_fifths_of_a_column() {
             capture.images["color"].at(kColumn, y, c) = c < 3 ? 0.4f * 10 + 0.6f : 1;
         }
     }
-    capture.images[layer_role(0, "color")] = std::move(first);
-    capture.images[layer_role(0, "depth")] = std::move(first_depth);
-    capture.images[layer_role(1, "color")] = std::move(second);
-    capture.images[layer_role(1, "depth")] = std::move(second_depth);
+    capture.images[RoleId::of_layer(0, "color")] = std::move(first);
+    capture.images[RoleId::of_layer(0, "depth")] = std::move(first_depth);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(second);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(second_depth);
     return capture;
 }
 

@@ -121,8 +121,8 @@ TEST(Bokeh, KeepsABulbRoundBesideANearPoleThatLayersHaveTheRestBehind) {
             for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 0.05f;
             capture.images["depth"].at(x, y, 0) = kApertureNearM;
         }
-    capture.images[layer_role(1, "color")] = std::move(behind);
-    capture.images[layer_role(1, "depth")] = std::move(behind_m);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(behind);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(behind_m);
     const Image out = through_aperture("bokeh", capture, radius_px);
     const Image hexagon = coverage(regular_polygon(6, radius_px / 2, 0), size, size, lamp_x, middle);
     EXPECT_GE(shape_iou(out, double(out.at(lamp_x + 3, middle, 0)), hexagon), 0.95);

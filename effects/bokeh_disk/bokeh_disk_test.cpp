@@ -161,8 +161,8 @@ TEST(BokehDisk, DissolvesAWireOverWhatALayerHasBehindIt) {
             depth.at(x, y, 0) = is_wire ? kApertureFocusM : kApertureFarM;
             if (is_wire) capture.images["depth"].at(x, y, 0) = kApertureNearM;
         }
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "depth")] = std::move(depth);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(color);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(depth);
     const Image out = blur(capture, radius_px);
     for (int y = 8; y < 40; ++y)
         for (const int x : {wire_x - 6, wire_x, wire_x + 6}) {

@@ -86,7 +86,7 @@ std::pair<double, double> decibels(const scene::Scene& scene, const std::string&
         if (layers == 1) return capture;
         Capture behind = std::move(renderer.render_layers(frame, frame, {0, 0}, 2)[1]);
         for (const char* role : {"color", "depth"})
-            capture.images[layer_role(1, role)] = std::move(behind.images.at(role));
+            capture.images[RoleId::of_layer(1, role)] = std::move(behind.images.at(role));
         return capture;
     };
     runner.color(capture_of(5));
@@ -142,13 +142,14 @@ TEST(CameraMotionBlur, IsNotFartherFromTheShutterWithASecondLayer) {
 Capture strip_before_wall(const CameraPose& pose, int left, int right, float share) {
     Capture capture = wall(pose, 6, [](glm::dvec2) { return 0.2; });
     for (int k = 0; k < 2; ++k) {
-        capture.images[layer_role(k, "color")] = Image(kWidth, kHeight, 4);
-        capture.images[layer_role(k, "depth")] = Image(kWidth, kHeight, 1);
+        capture.images[RoleId::of_layer(k, "color")] = Image(kWidth, kHeight, 4);
+        capture.images[RoleId::of_layer(k, "depth")] = Image(kWidth, kHeight, 1);
     }
     const auto put = [&](int layer, int x, int y, float light, float alpha, float depth_m) {
-        for (int c = 0; c < 3; ++c) capture.images[layer_role(layer, "color")].at(x, y, c) = alpha * light;
-        capture.images[layer_role(layer, "color")].at(x, y, 3) = alpha;
-        capture.images[layer_role(layer, "depth")].at(x, y, 0) = depth_m;
+        for (int c = 0; c < 3; ++c)
+            capture.images[RoleId::of_layer(layer, "color")].at(x, y, c) = alpha * light;
+        capture.images[RoleId::of_layer(layer, "color")].at(x, y, 3) = alpha;
+        capture.images[RoleId::of_layer(layer, "depth")].at(x, y, 0) = depth_m;
     };
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {

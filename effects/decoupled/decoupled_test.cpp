@@ -71,8 +71,8 @@ TEST(Decoupled, ShowsTheSecondLayerWhereTheLensSeesAroundTheFirst) {
             for (int c = 0; c < 4 && x >= 30 && x < 64; ++c) color.at(x, y, c) = c == 3 ? 1 : hidden(y);
         }
     const Image guessed = through(capture, 12, R"("blades": 4)");
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "depth")] = std::move(depth);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(color);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(depth);
     const Image seen = through(capture, 12, R"("blades": 4)");
     const double reach_px = 12 / std::sqrt(2.0);
     for (int x = 57; x < 64; ++x) {
@@ -95,8 +95,8 @@ TEST(Decoupled, SharesAPixelOfTwoLayersByItsAlpha) {
                                     : layer    ? 2 * kApertureFocusM
                                                : kApertureFocusM;
             }
-        capture.images[layer_role(layer, "color")] = std::move(color);
-        capture.images[layer_role(layer, "depth")] = std::move(depth);
+        capture.images[RoleId::of_layer(layer, "color")] = std::move(color);
+        capture.images[RoleId::of_layer(layer, "depth")] = std::move(depth);
     }
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 64; ++x) {

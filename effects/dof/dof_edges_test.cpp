@@ -124,10 +124,10 @@ TEST(DofEdges, AnAntialiasedEdgeInFocusStaysBeforeANarrowBlur) {
         first_depth.at(edge, y, 0) = kApertureFocusM;
         second_depth.at(edge, y, 0) = wall_m;
     }
-    capture.images[layer_role(0, "color")] = std::move(first);
-    capture.images[layer_role(0, "depth")] = std::move(first_depth);
-    capture.images[layer_role(1, "color")] = std::move(second);
-    capture.images[layer_role(1, "depth")] = std::move(second_depth);
+    capture.images[RoleId::of_layer(0, "color")] = std::move(first);
+    capture.images[RoleId::of_layer(0, "depth")] = std::move(first_depth);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(second);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(second_depth);
     const Image out = through_aperture("dof", capture, 16, R"("blades": 0)");
     for (int y = 20; y < 44; ++y) EXPECT_NEAR(out.at(edge, y, 0), mixed, 0.03) << y;
 }

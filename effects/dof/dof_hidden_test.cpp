@@ -123,8 +123,8 @@ void add_layer(Capture& capture, int layer, PixelAt pixel_at) {
             color.at(x, y, 3) = pixel.alpha;
             depth.at(x, y, 0) = pixel.depth_m;
         }
-    capture.images[layer_role(layer, "color")] = std::move(color);
-    capture.images[layer_role(layer, "depth")] = std::move(depth);
+    capture.images[RoleId::of_layer(layer, "color")] = std::move(color);
+    capture.images[RoleId::of_layer(layer, "depth")] = std::move(depth);
 }
 
 constexpr float kNowhere = std::numeric_limits<float>::infinity();

@@ -47,8 +47,8 @@ TEST(DofLayered, TakesWhatLiesBehindFromTheSecondLayerOfTheCapture) {
             color.at(x, y, 1) = color.at(x, y, 3) = 1;
             depth.at(x, y, 0) = 2;
         }
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "depth")] = std::move(depth);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(color);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(depth);
     const double h = kWidth / 2.0 / lens.radius_px;
     const double strip = 2 / std::numbers::pi * (std::asin(h) + h * std::sqrt(1 - h * h));
     EXPECT_NEAR(middle(), 1 - strip, 0.03);

@@ -65,8 +65,8 @@ TEST(MotionBlur, ShowsWhatTheSecondLayerHasOfTheUncovered) {
         for (int c = 0; c < 3; ++c) color.at(x, y, c) = disc_light(x);
         color.at(x, y, 3) = 1;
     });
-    capture.images[layer_role(1, "color")] = std::move(color);
-    capture.images[layer_role(1, "velocity")] = std::move(velocity);
+    capture.images[RoleId::of_layer(1, "color")] = std::move(color);
+    capture.images[RoleId::of_layer(1, "velocity")] = std::move(velocity);
     const double known = error_of_box_over_disc(blur(capture));
     EXPECT_LT(known, 0.02);
     EXPECT_GT(guessed, 2 * known);
@@ -83,21 +83,21 @@ Capture layered(int width, int layers, ColumnAt column_at) {
     constexpr int height = 48;
     Capture capture = make_capture({.width = width, .height = height, .background_depth_m = 5});
     for (int k = 0; k < layers; ++k) {
-        capture.images[layer_role(k, "color")] = Image(width, height, 4);
-        capture.images[layer_role(k, "depth")] = Image(width, height, 1);
+        capture.images[RoleId::of_layer(k, "color")] = Image(width, height, 4);
+        capture.images[RoleId::of_layer(k, "depth")] = Image(width, height, 1);
         for (const char* role : {"velocity", "velocity_next"})
-            capture.images[layer_role(k, role)] = Image(width, height, 2);
+            capture.images[RoleId::of_layer(k, role)] = Image(width, height, 2);
     }
     each_pixel(capture.images["color"], [&](int x, int y) {
         float left = 1, largest = 0, light = 0;
         for (int k = 0; k < layers; ++k) {
             const LayerColumn column = column_at(k, x);
             for (int c = 0; c < 3; ++c)
-                capture.images[layer_role(k, "color")].at(x, y, c) = column.light * column.share;
-            capture.images[layer_role(k, "color")].at(x, y, 3) = column.share;
-            capture.images[layer_role(k, "depth")].at(x, y, 0) = column.depth_m;
+                capture.images[RoleId::of_layer(k, "color")].at(x, y, c) = column.light * column.share;
+            capture.images[RoleId::of_layer(k, "color")].at(x, y, 3) = column.share;
+            capture.images[RoleId::of_layer(k, "depth")].at(x, y, 0) = column.depth_m;
             for (const char* role : {"velocity", "velocity_next"})
-                capture.images[layer_role(k, role)].at(x, y, 0) = column.velocity_px;
+                capture.images[RoleId::of_layer(k, role)].at(x, y, 0) = column.velocity_px;
             light += left * column.share * column.light;
             if (left * column.share > largest) {
                 largest = left * column.share;

@@ -145,10 +145,11 @@ Capture slab(double thickness_m, double angle) {
             back.at(x, y, 0) = float((std::cos(angle) + thickness_m) / facing);
             ids.uint_at(x, y, 0) = capture.images.at("object_id").uint_at(x, y, 0);
         }
-    capture.images[layer_role(1, "depth")] = std::move(back);
-    capture.images[layer_role(1, "object_id")] = std::move(ids);
+    capture.images[RoleId::of_layer(1, "depth")] = std::move(back);
+    capture.images[RoleId::of_layer(1, "object_id")] = std::move(ids);
     capture.header.layer_count = 2;
-    for (const char* role : {"depth", "object_id"}) capture.header.layer_roles.push_back(layer_role(1, role));
+    for (const char* role : {"depth", "object_id"})
+        capture.header.layer_roles.push_back(RoleId::of_layer(1, role));
     return capture;
 }
 
@@ -179,9 +180,9 @@ TEST(Transmittance, LetsNothingThroughFromAnObjectBehindOrFromNothing) {
     Capture layered = slab(0.001, 0.3);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
-            if (x < kWidth / 2) layered.images.at(layer_role(1, "object_id")).uint_at(x, y, 0) = 7;
+            if (x < kWidth / 2) layered.images.at(RoleId::of_layer(1, "object_id")).uint_at(x, y, 0) = 7;
             else if (x > kWidth / 2)
-                layered.images.at(layer_role(1, "depth")).at(x, y, 0) =
+                layered.images.at(RoleId::of_layer(1, "depth")).at(x, y, 0) =
                     std::numeric_limits<float>::infinity();
         }
     const Image light = transmitted(layered);

@@ -133,14 +133,14 @@ void CaseTracer::add_step(const PipelineStep& step, const GoldenCase& test, Case
     parts.effects[step.name] = step.manifest->id;
     for (const fs::path& file : files_of_step(step, data_path() / "glsl"))
         add_file(file, {file, kind_of_file(name_of(file)), {step.name}}, parts);
-    const auto add_value = [&](const std::string& param, std::string text) {
+    const auto add_value = [&](const std::string& param, const std::string& text) {
         const auto place = step.places.find(param);
         fs::path document = test.look.empty() ? test.file : test.look;
         // The case itself has the values of its `set`.
         if (place != step.places.end())
             document = place->second.option ? test.file : fs::path(place->second.file);
         const std::string name = step.name + "." + param;
-        parts.origin.values[name] = short_value(std::move(text));
+        parts.origin.values[name] = short_value(text);
         parts.values[name] = {document, "parameter", {step.name}};
     };
     for (const auto& [param, value] : step.values) add_value(param, format_source(value));

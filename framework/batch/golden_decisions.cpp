@@ -48,7 +48,7 @@ SeenImage image_of(const Node& node, Diagnostics& diagnostics) {
 }
 
 GoldenDecision decision_of(const Node& node, const std::string& author, Diagnostics& diagnostics) {
-    static constexpr std::array kWords{std::string("approve"), std::string("reject")};
+    static const std::array kWords{std::string("approve"), std::string("reject")};
     ObjectReader reader(node, "the decision", diagnostics);
     GoldenDecision decision;
     decision.test = line_of(reader, node, "case", kMostNameBytes, Presence::required, diagnostics);

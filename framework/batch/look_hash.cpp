@@ -12,9 +12,9 @@ namespace aftershade {
 
 namespace fs = std::filesystem;
 
-LookHasher::LookHasher(std::vector<fs::path> effect_folders, fs::path glsl_folder,
+LookHasher::LookHasher(const std::vector<fs::path>& effect_folders, fs::path glsl_folder,
                        const std::vector<fs::path>& plugins)
-    : effects_(std::move(effect_folders), glsl_folder), glsl_folder_(std::move(glsl_folder)) {
+    : effects_(effect_folders, glsl_folder), glsl_folder_(std::move(glsl_folder)) {
     std::set<fs::path> libraries;
     std::error_code unreadable;
     for (const fs::path& folder : plugins)

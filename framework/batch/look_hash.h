@@ -16,7 +16,7 @@ class LookHasher {
 public:
     /// As the registry's: folders of effects in order, and the folder of shared GLSL.
     /// `plugins`: folders whose libraries any of the effects may load.
-    LookHasher(std::vector<std::filesystem::path> effect_folders, std::filesystem::path glsl_folder,
+    LookHasher(const std::vector<std::filesystem::path>& effect_folders, std::filesystem::path glsl_folder,
                const std::vector<std::filesystem::path>& plugins = {});
 
     /// 16 hexadecimal digits over the look (and looks that it uses), `--set`s, the files that values and

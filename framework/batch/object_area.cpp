@@ -23,9 +23,9 @@ AreaShape object_area(const std::string& capture, std::optional<int> frame,
                                             " frames; name the file of one of them");
     const bool named = std::ranges::any_of(objects, [](const TableKey& key) { return !key.name.empty(); });
     const CaptureReader reader(*sequence, std::move(profiles), limits);
-    const std::string role = coverage_role(objects);
+    const RoleId role = RoleId::coverage(objects);
     const Capture read = reader.read(sequence->file_number(frame.value_or(sequence->frames.front())),
-                                     std::vector<std::string>{role});
+                                     std::vector<RoleId>{role});
     if (!named && !std::ranges::count(read.header.roles, kObjectIdRole))
         throw Error(ErrorKind::capture, read.header.path.string() +
                                             ": has no object ids: neither a Cryptomatte nor the " +

@@ -11,6 +11,7 @@
 #include "framework/capture/bare_channels.h"
 #include "framework/capture/camera_metadata.h"
 #include "framework/capture/camera_motion.h"
+#include "framework/capture/common_names.h"
 #include "framework/capture/cryptomatte.h"
 #include "framework/capture/decode.h"
 #include "framework/capture/layer_roles.h"
@@ -133,7 +134,7 @@ void CaptureReader::find_roles(OpenFrame& open) const {
     open.header.layer_count = sequence_.deep_layers;
     for (int layer = 0; layer < sequence_.deep_layers; ++layer)
         for (const auto& [role, source] : open.roles)
-            if (is_deep(open, role)) open.header.layer_roles.push_back(layer_role(layer, role));
+            if (is_deep(open, role)) open.header.layer_roles.push_back(RoleId::of_layer(layer, role));
 }
 
 CaptureReader::OpenFrame CaptureReader::open(int frame, int deep_layers) const {
@@ -289,10 +290,10 @@ Image CaptureReader::read_role(const OpenFrame& open, const std::string& name, c
     return image;
 }
 
-void CaptureReader::prefetch(const OpenFrame& open, std::span<const std::string> roles) const {
+void CaptureReader::prefetch(const OpenFrame& open, std::span<const RoleId> roles) const {
     std::map<const FrameFile*, std::vector<FrameFile::Request>> requests;
-    for (const std::string& role : with_parts_of_irradiance(open, roles)) {
-        const auto found = open.roles.find(role);
+    for (const RoleId& role : with_parts_of_irradiance(open, roles)) {
+        const auto found = open.roles.find(role.name());
         if (found == open.roles.end()) continue;
         const RoleSource& source = found->second;
         if (source.from_cryptomatte || !source.luminance.empty()) continue;
@@ -307,7 +308,7 @@ void CaptureReader::prefetch(const OpenFrame& open, std::span<const std::string>
     for (const auto& [file, wanted] : requests) file->prefetch(wanted);
 }
 
-void CaptureReader::read_images(OpenFrame& open, std::span<const std::string> roles, Capture& capture) const {
+void CaptureReader::read_images(OpenFrame& open, std::span<const RoleId> roles, Capture& capture) const {
     const auto wants = [&](const std::string& role) {
         return open.roles.contains(role) && std::find(roles.begin(), roles.end(), role) != roles.end();
     };
@@ -325,7 +326,7 @@ void CaptureReader::read_images(OpenFrame& open, std::span<const std::string> ro
     if (wants(kColorRole)) capture.images[kColorRole] = std::move(color);
 }
 
-Capture CaptureReader::read(int frame, std::span<const std::string> roles) const {
+Capture CaptureReader::read(int frame, std::span<const RoleId> roles) const {
     if (!sequence_.layers.empty()) return read_layered(frame, roles);
     OpenFrame open = this->open(frame, std::min(asked_layers(roles), sequence_.deep_layers));
     Capture capture;
@@ -333,8 +334,8 @@ Capture CaptureReader::read(int frame, std::span<const std::string> roles) const
     compare_roles(open.header, roles);
     capture.header = open.header;
     read_images(open, roles, capture);
-    for (const std::string& role : roles)
-        if (is_coverage_role(role)) capture.images[role] = read_coverage(open, role);
+    for (const RoleId& role : roles)
+        if (role.is_coverage()) capture.images[role] = read_coverage(open, role);
     if (const auto ids = capture.images.find(kObjectIdRole);
         ids != capture.images.end() && !sequence_.object_names.empty())
         require_names(open, ids->second, sequence_.object_names);

@@ -46,9 +46,9 @@ struct CaptureHeader {
     Window data_window;        ///< colour's: the working grid
     Window display_window;
     float pixel_aspect = 1;
-    int layer_count = 1;                   ///< of a deep capture, and of capture.json's "layers"
-    std::vector<std::string> layer_roles;  ///< "layer1:depth": what can be read of layers, front to back
-    std::vector<std::string> roles;        ///< that can be read, sorted
+    int layer_count = 1;              ///< of a deep capture, and of capture.json's "layers"
+    std::vector<RoleId> layer_roles;  ///< "layer1:depth": what can be read of layers, front to back
+    std::vector<std::string> roles;   ///< that can be read, sorted
     std::map<std::string, std::vector<std::string>> role_channels;  ///< the stored channels of each
     /// For each role whose channels no document names: the first channel of every other set that fits it.
     std::map<std::string, std::vector<std::string>> other_channels;
@@ -68,7 +68,7 @@ struct CaptureHeader {
 /// One frame. Every image has the size of the data window, the working grid.
 struct Capture {
     CaptureHeader header;
-    std::map<std::string, Image> images;  ///< by role
+    std::map<RoleId, Image> images;  ///< by role
     std::size_t pixels_without_motion =
         0;  ///< of velocity: filled, from the camera where that is known, else with 0
     bool motion_from_camera = false;
@@ -78,7 +78,7 @@ struct Capture {
     std::optional<DeepReduction> deep;
     int deep_layers = 0;
     /// By role, as they were read; filled by whoever looks for them (framework/run/nan_policy.h).
-    std::map<std::string, NonFinitePixels> non_finite;
+    std::map<RoleId, NonFinitePixels> non_finite;
 };
 
 /// Other sources of a role that a frame lacks.
@@ -114,18 +114,19 @@ public:
     void share_first_of(const CaptureReader& other) { first_ = other.first_; }
     /// The first frame's decisions on these roles and on all pictures, as text that changes with them; ""
     /// for a single frame.
-    std::string decision(std::span<const std::string> roles) const;
+    std::string decision(std::span<const RoleId> roles) const;
     /// Whether the frame's main file is there.
     bool has_frame(int frame) const;
     /// Throws Error(ErrorKind::capture): no such file, not readable, no profile.
     CaptureHeader read_header(int frame) const;
     /// Reads the header and the requested roles. A role that the files lack is left out of `images`. A role
-    /// of a layer, layer_role(), is read where the capture has that layer; the last layer that is read
+    /// of a layer, RoleId::of_layer(), is read where the capture has that layer; the last layer that is read
     /// holds what lies behind it, too. Other roles are of the whole picture: layers put over one another. The
-    /// role coverage_role() is the share of each pixel that the objects cover, by the file's Cryptomatte;
+    /// role RoleId::coverage() is the share of each pixel that the objects cover, by the file's Cryptomatte;
     /// without one it is 0 or 1, by object_id. Throws Error(ErrorKind::capture) where objects are requested
     /// by names that the file cannot have.
-    Capture read(int frame, std::span<const std::string> roles) const;
+    Capture read(int frame, std::span<const RoleId> roles) const;
+    Capture read(int frame, std::span<const std::string> names) const { return read(frame, role_ids(names)); }
 
     /// Other profiles that find the role in the frame's channels, and other layers that have it.
     RoleElsewhere find_elsewhere(const CaptureHeader& header, const std::string& role) const;
@@ -172,7 +173,7 @@ private:
     void compare_sources(OpenFrame& open) const;
     void compare_profile(const ExrPart& part, const CaptureHeader& first, CaptureHeader& header) const;
     void compare_with_first(CaptureHeader& header, const Chromaticities& primaries) const;
-    void compare_roles(CaptureHeader& header, std::span<const std::string> roles) const;
+    void compare_roles(CaptureHeader& header, std::span<const RoleId> roles) const;
     void compare_depths(CaptureHeader& header) const;
     bool is_held_flat() const;
     OpenFrame open(int frame, int deep_layers = 1) const;
@@ -191,13 +192,12 @@ private:
                                                      std::span<const std::string> objects) const;
     const FrameFile& cryptomatte_file(const OpenFrame& open) const;
     Image read_cryptomatte_role(const OpenFrame& open, RoleKind kind) const;
-    Image read_coverage(const OpenFrame& open, const std::string& role) const;
+    Image read_coverage(const OpenFrame& open, const RoleId& role) const;
     void name_numbers(Image& ids) const;
     void require_names(const OpenFrame& open, const Image& ids, std::span<const std::string> names) const;
     void require_albedo(OpenFrame& open) const;
     std::optional<Image> read_added_light(const OpenFrame& open, const RoleSource& source) const;
-    static std::vector<std::string> with_parts_of_irradiance(const OpenFrame& open,
-                                                             std::span<const std::string> roles);
+    static std::vector<RoleId> with_parts_of_irradiance(const OpenFrame& open, std::span<const RoleId> roles);
     Image read_stored_albedo(const OpenFrame& open) const;
     void finish_irradiance(const OpenFrame& open, const RoleSource& source, Image& light,
                            Capture& capture) const;
@@ -212,17 +212,17 @@ private:
     void find_colors(OpenFrame& open) const;
     static void find_losses(OpenFrame& open);
     /// Unpacks what read_role will need of these roles.
-    void prefetch(const OpenFrame& open, std::span<const std::string> roles) const;
+    void prefetch(const OpenFrame& open, std::span<const RoleId> roles) const;
     Image read_ids(const RoleSource& source, const Window& grid, int layer = -1) const;
     Image read_role(const OpenFrame& open, const std::string& role, const Image* color,
                     Capture& capture) const;
     /// The images of one layer of the frame, or of the whole picture, as `open` says.
-    void read_images(OpenFrame& open, std::span<const std::string> roles, Capture& capture) const;
+    void read_images(OpenFrame& open, std::span<const RoleId> roles, Capture& capture) const;
     /// The first layer as a sequence of its own; nullopt where the capture is one picture.
     std::optional<Sequence> front_layer() const;
     CaptureHeader read_layered_header(int frame) const;
-    Capture read_layered(int frame, std::span<const std::string> roles) const;
-    void read_deep_layers(OpenFrame& open, std::span<const std::string> roles, Capture& capture) const;
+    Capture read_layered(int frame, std::span<const RoleId> roles) const;
+    void read_deep_layers(OpenFrame& open, std::span<const RoleId> roles, Capture& capture) const;
     static bool is_deep(const OpenFrame& open, const std::string& role);
     static DeepPart* deep_picture(const OpenFrame& open);
     void read_motion(const OpenFrame& open, const std::string& role, Image& velocity, const Image* color,

@@ -26,19 +26,18 @@ DeepPart* CaptureReader::deep_picture(const OpenFrame& open) {
     return nullptr;
 }
 
-void CaptureReader::read_deep_layers(OpenFrame& open, std::span<const std::string> roles,
-                                     Capture& capture) const {
+void CaptureReader::read_deep_layers(OpenFrame& open, std::span<const RoleId> roles, Capture& capture) const {
     DeepPart* const picture = deep_picture(open);
     if (!picture) return;
     const int layers = open.header.layer_roles.empty() ? 0 : picture->layers();
     for (open.layer = 0; open.layer < layers; ++open.layer) {
-        std::vector<std::string> deep = roles_of_layer(roles, open.layer);
-        std::erase_if(deep, [&](const std::string& role) { return !is_deep(open, role); });
+        std::vector<RoleId> deep = roles_of_layer(roles, open.layer);
+        std::erase_if(deep, [&](const RoleId& role) { return !is_deep(open, role.name()); });
         Capture of_layer;  // what is said of motion and alpha is said of the whole picture
         of_layer.header = open.header;
         read_images(open, deep, of_layer);
         for (auto& [role, image] : of_layer.images)
-            capture.images[layer_role(open.layer, role)] = std::move(image);
+            capture.images[RoleId::of_layer(open.layer, role.name())] = std::move(image);
     }
     open.layer = -1;
     capture.deep = picture->reduction();

@@ -103,7 +103,7 @@ void CaptureReader::compare_depths(CaptureHeader& header) const {
     header.layer_count = 1;
 }
 
-std::string CaptureReader::decision(std::span<const std::string> roles) const {
+std::string CaptureReader::decision(std::span<const RoleId> roles) const {
     std::string text;
     for (std::size_t i = 0; i < sequence_.layers.size(); ++i) {
         const Sequence own = sequence_of_layer(sequence_, i);
@@ -119,7 +119,7 @@ std::string CaptureReader::decision(std::span<const std::string> roles) const {
     for (const float number : header.primaries) text += " " + format_number(double(number));
     for (const auto& [role, view] : first->views) text += "\n" + role + " in " + view;
     for (const auto& [role, source] : first->sources)
-        if (role == kColorRole || std::ranges::find(roles, role) != roles.end())
+        if (role == kColorRole || std::find(roles.begin(), roles.end(), role) != roles.end())
             text += "\n" + role + " from " + source;
     return text;
 }
@@ -223,18 +223,19 @@ void CaptureReader::compare_with_first(CaptureHeader& header, const Chromaticiti
                                      format_number(double(other.pixel_aspect)));
 }
 
-void CaptureReader::compare_roles(CaptureHeader& header, std::span<const std::string> roles) const {
+void CaptureReader::compare_roles(CaptureHeader& header, std::span<const RoleId> roles) const {
     const FirstFrame* const first = first_frame();
     if (!first) return;
     const auto has = [](const CaptureHeader& of, const std::string& role) {
         return std::ranges::find(of.roles, role) != of.roles.end();
     };
     const std::string path = first->header->path.string();
-    for (const std::string& role : roles) {
-        const bool is_there = has(header, role);
-        if (is_there == has(*first->header, role) || is_coverage_role(role) || is_named(role)) continue;
-        header.differences.push_back(is_there ? "it has " + role + ", which " + path + " does not have"
-                                              : "it has no " + role + ", which " + path + " has");
+    for (const RoleId& role : roles) {
+        const bool is_there = has(header, role.name());
+        if (is_there == has(*first->header, role.name()) || role.is_coverage() || is_named(role.name()))
+            continue;
+        header.differences.push_back(is_there ? "it has " + role.name() + ", which " + path + " does not have"
+                                              : "it has no " + role.name() + ", which " + path + " has");
     }
 }
 

@@ -30,9 +30,9 @@ void CaptureReader::require_albedo(OpenFrame& open) const {
 }
 
 /// The roles, and those that irradiance is made of if it is one of them.
-std::vector<std::string> CaptureReader::with_parts_of_irradiance(const OpenFrame& open,
-                                                                 std::span<const std::string> roles) {
-    std::vector<std::string> all(roles.begin(), roles.end());
+std::vector<RoleId> CaptureReader::with_parts_of_irradiance(const OpenFrame& open,
+                                                            std::span<const RoleId> roles) {
+    std::vector<RoleId> all(roles.begin(), roles.end());
     const auto found = open.roles.find(kIrradianceRole);
     if (found == open.roles.end() || std::ranges::find(all, kIrradianceRole) == all.end()) return all;
     const RoleDecoding& decoding = found->second.decoding;

@@ -61,7 +61,7 @@ CaptureHeader header_of(const std::vector<CaptureHeader>& layers) {
         require_same_picture(layers[i], layers.front(), i);
         header.data_window = united(header.data_window, layers[i].data_window);
         for (const std::string& role : layers[i].roles) {
-            header.layer_roles.push_back(layer_role(int(i), role));
+            header.layer_roles.push_back(RoleId::of_layer(int(i), role));
             if (std::ranges::find(header.roles, role) != header.roles.end()) continue;
             header.roles.push_back(role);
             header.role_channels[role] = layers[i].role_channels.at(role);
@@ -116,8 +116,7 @@ std::vector<std::vector<float>> shares_left(std::span<const Capture> layers) {
     return left;
 }
 
-Image blended(std::span<const Capture> layers, std::span<const std::vector<float>> left,
-              const std::string& role) {
+Image blended(std::span<const Capture> layers, std::span<const std::vector<float>> left, const RoleId& role) {
     Image result;
     for (std::size_t k = 0; k < layers.size(); ++k) {
         const auto found = layers[k].images.find(role);
@@ -135,8 +134,7 @@ Image blended(std::span<const Capture> layers, std::span<const std::vector<float
 }
 
 /// By pixel, of the layer that shows most; the nearest of equals.
-Image picked(std::span<const Capture> layers, std::span<const std::vector<float>> left,
-             const std::string& role) {
+Image picked(std::span<const Capture> layers, std::span<const std::vector<float>> left, const RoleId& role) {
     std::vector<std::pair<const Image*, std::size_t>> candidates;
     for (std::size_t k = 0; k < layers.size(); ++k)
         if (const auto found = layers[k].images.find(role); found != layers[k].images.end())
@@ -160,11 +158,11 @@ Image picked(std::span<const Capture> layers, std::span<const std::vector<float>
 }
 
 /// Some layers as one picture.
-std::map<std::string, Image> put_over_one_another(std::span<const Capture> layers,
-                                                  const std::vector<std::string>& roles) {
-    std::map<std::string, Image> images;
+std::map<RoleId, Image> put_over_one_another(std::span<const Capture> layers,
+                                             const std::vector<RoleId>& roles) {
+    std::map<RoleId, Image> images;
     const std::vector<std::vector<float>> left = shares_left(layers);
-    for (const std::string& role : roles) {
+    for (const RoleId& role : roles) {
         const bool is_there =
             std::ranges::any_of(layers, [&](const Capture& layer) { return layer.images.contains(role); });
         if (!is_there) continue;
@@ -198,8 +196,8 @@ CaptureHeader CaptureReader::read_layered_header(int frame) const {
     return header_of(layers);
 }
 
-Capture CaptureReader::read_layered(int frame, std::span<const std::string> roles) const {
-    std::vector<std::string> wanted = roles_of_any_layer(roles);
+Capture CaptureReader::read_layered(int frame, std::span<const RoleId> roles) const {
+    std::vector<RoleId> wanted = roles_of_any_layer(roles);
     if (std::ranges::find(wanted, kColorRole) == wanted.end()) wanted.emplace_back(kColorRole);
     std::vector<Capture> layers;
     std::vector<CaptureHeader> headers;
@@ -225,7 +223,7 @@ Capture CaptureReader::read_layered(int frame, std::span<const std::string> role
         const bool is_last = i + 1 == told;
         const auto from = std::span<const Capture>(layers).subspan(i, is_last ? layers.size() - i : 1);
         for (auto& [role, image] : put_over_one_another(from, roles_of_layer(roles, int(i))))
-            capture.images[layer_role(int(i), role)] = std::move(image);
+            capture.images[RoleId::of_layer(int(i), role.name())] = std::move(image);
     }
     return capture;
 }

@@ -8,9 +8,9 @@
 
 namespace aftershade {
 
-Image CaptureReader::read_coverage(const OpenFrame& open, const std::string& role) const {
+Image CaptureReader::read_coverage(const OpenFrame& open, const RoleId& role) const {
     const Window& grid = open.header.data_window;
-    const std::vector<TableKey> objects = objects_of_coverage(role);
+    const std::vector<TableKey>& objects = role.objects();
     std::vector<std::string> names;
     std::vector<TableKey> ids;
     std::vector<TableKey> wanted = objects;

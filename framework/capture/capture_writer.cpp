@@ -120,7 +120,7 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
     std::map<std::string, Image> stored;
     const auto colors = profile.roles.find(std::string(kColorRole));
     for (const auto& [role, image] : capture.images) {
-        const auto found = profile.roles.find(role);
+        const auto found = profile.roles.find(role.name());
         // Of producers with a file for each role several have the channels of color, which one file cannot
         // hold.
         const bool shares_colors = role != kColorRole && found != profile.roles.end() &&
@@ -129,14 +129,14 @@ std::vector<std::string> write_capture(const std::filesystem::path& path, const 
         const bool lacks_albedo =
             found != profile.roles.end() && found->second.times_albedo && albedo.empty();
         if (found == profile.roles.end() || found->second.layers.empty() || shares_colors || lacks_albedo) {
-            left_out.push_back(role);
+            left_out.push_back(role.name());
             continue;
         }
         Image encoded = kind_of_role(role) == RoleKind::light ? as_stored(image) : image;
         // A producer that is not ours stores ids as floats, as every one of them does.
         const bool ids_as_uint = profile.id == "native";
         require_exact_ids(path, image, ids_as_uint);
-        stored.merge(encode_role(role, std::move(encoded), found->second,
+        stored.merge(encode_role(role.name(), std::move(encoded), found->second,
                                  channel_names(found->second, image.channels()), ids_as_uint, context));
     }
     if (stored.empty())

@@ -2,29 +2,35 @@
 
 #include <algorithm>
 
-#include "framework/image/role.h"
-
 namespace aftershade {
 
-int asked_layers(std::span<const std::string> roles) {
+namespace {
+
+RoleId without_layer(const RoleId& role) {
+    return role.layer() < 0 ? role : RoleId(role.of_any_layer());
+}
+
+}  // namespace
+
+int asked_layers(std::span<const RoleId> roles) {
     int layers = 1;
-    for (const std::string& role : roles) layers = std::max(layers, split_layer_role(role).layer + 1);
+    for (const RoleId& role : roles) layers = std::max(layers, role.layer() + 1);
     return layers;
 }
 
-std::vector<std::string> roles_of_any_layer(std::span<const std::string> roles) {
-    std::vector<std::string> result;
-    for (const std::string& role : roles) {
-        const std::string name = split_layer_role(role).role;
-        if (std::find(result.begin(), result.end(), name) == result.end()) result.push_back(name);
+std::vector<RoleId> roles_of_any_layer(std::span<const RoleId> roles) {
+    std::vector<RoleId> result;
+    for (const RoleId& role : roles) {
+        RoleId any = without_layer(role);
+        if (std::ranges::find(result, any) == result.end()) result.push_back(std::move(any));
     }
     return result;
 }
 
-std::vector<std::string> roles_of_layer(std::span<const std::string> roles, int layer) {
-    std::vector<std::string> result;
-    for (const std::string& role : roles)
-        if (const RoleOfLayer of = split_layer_role(role); of.layer == layer) result.push_back(of.role);
+std::vector<RoleId> roles_of_layer(std::span<const RoleId> roles, int layer) {
+    std::vector<RoleId> result;
+    for (const RoleId& role : roles)
+        if (role.layer() == layer) result.push_back(without_layer(role));
     return result;
 }
 

@@ -361,8 +361,7 @@ void add_role_file(Sequence& sequence, const std::string& text, Diagnostics& dia
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
         diagnostics.error(place, "expected role=file, such as depth=z.####.exr");
-    else if (const std::string role = text.substr(0, equals);
-             !find_role(role) || split_layer_role(role).layer >= 0)
+    else if (const std::string role = text.substr(0, equals); !find_role(role) || RoleId(role).layer() >= 0)
         diagnostics.error(place, "'" + role + "' is not a role" + did_you_mean(role, role_names()));
     else sequence.role_files.insert_or_assign(role, file_or_pattern(text.substr(equals + 1)));
 }

@@ -25,6 +25,7 @@
 #include "framework/effect/param_reader.h"
 #include "framework/effect/param_resources.h"
 #include "framework/effect/source_lines.h"
+#include "framework/image/role.h"
 
 namespace aftershade {
 
@@ -171,7 +172,7 @@ bool pass_enabled(const PassSpec& pass, const ParamReader& params,
 bool has_size_of_target(const EffectManifest& manifest, const WriteSpec& write);
 
 /// Format of an input's or output's texture: its role's channels as floats, or unsigned integers.
-gpu::TextureFormat texture_format_of_role(const std::string& role);
+gpu::TextureFormat texture_format_of_role(const RoleId& role);
 
 /// Format of a read's, a write's or an image's texture.
 gpu::TextureFormat format_of_read(const EffectManifest& manifest, const std::string& name);

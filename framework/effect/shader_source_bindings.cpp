@@ -95,8 +95,8 @@ bool has_size_of_target(const EffectManifest& manifest, const WriteSpec& write) 
     return texture && texture->grid.has_formula();
 }
 
-gpu::TextureFormat texture_format_of_role(const std::string& role_name) {
-    const auto role = find_role(role_name);
+gpu::TextureFormat texture_format_of_role(const RoleId& id) {
+    const auto role = find_role(id);
     if (role->type == ComponentType::uint32) return gpu::TextureFormat::r32ui;
     if (role->channels == 1) return gpu::TextureFormat::r32f;
     if (role->channels == 2) return gpu::TextureFormat::rg32f;

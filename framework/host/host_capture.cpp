@@ -74,7 +74,7 @@ void check_window(const Window& window, const char* name) {
 
 /// A role that a producer of captures may give.
 ChannelRole known_role(const std::string& name) {
-    const auto role = is_coverage_role(name) ? std::nullopt : find_role(name);
+    const auto role = find_role(name);
     if (!role)
         fail_at(ErrorKind::usage, name,
                 "not a role" + did_you_mean(name, role_names()) +
@@ -93,7 +93,7 @@ void check_size(const Window& window, const std::string& role, int width, int he
 
 void list_roles(aftershade::Capture& capture) {
     capture.header.roles.clear();
-    for (const auto& [role, image] : capture.images) capture.header.roles.push_back(role);
+    for (const auto& [role, image] : capture.images) capture.header.roles.push_back(role.name());
 }
 
 }  // namespace
@@ -197,7 +197,7 @@ bool Capture::has_image(const std::string& role) const noexcept {
 
 std::vector<std::string> Capture::roles() const {
     std::vector<std::string> roles;
-    for (const auto& [role, image] : data_->capture.images) roles.push_back(role);
+    for (const auto& [role, image] : data_->capture.images) roles.push_back(role.name());
     return roles;
 }
 

@@ -153,9 +153,10 @@ std::vector<LookParam> Look::params() const {
 
 std::vector<std::string> Look::inputs() const {
     return called(*required(data_).host, [&] {
-        auto roles = data_->core->pipeline.capture_roles();
-        std::erase_if(roles, [](const std::string& role) { return is_coverage_role(role); });
-        return roles;
+        std::vector<std::string> names;
+        for (const RoleId& role : data_->core->pipeline.capture_roles())
+            if (!role.is_coverage()) names.push_back(role.name());
+        return names;
     });
 }
 
@@ -202,7 +203,7 @@ Capture Look::read(const fs::path& path, const CaptureOptions& options) const {
     return called(*required(data_).host, [&] {
         const Pipeline& pipeline = data_->core->pipeline;
         const auto sequence = open_sequence_data(*data_->host, path, options, pipeline.object_names());
-        auto roles = options.roles.empty() ? pipeline.capture_roles() : options.roles;
+        const auto roles = options.roles.empty() ? pipeline.capture_roles() : role_ids(options.roles);
         return read_capture(*sequence, sequence->sequence.frames.front(), 0, roles);
     });
 }

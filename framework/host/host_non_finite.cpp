@@ -41,7 +41,7 @@ std::shared_ptr<const Capture::Data> meet_non_finite(std::shared_ptr<const Captu
         if (NonFinitePixels pixels = find_non_finite(image, std::isinf(find_role(role)->outside))) {
             pixels.x += window.min_x;
             pixels.y += window.min_y;
-            here.push_back(info_of_pixels(role, true, pixels));
+            here.push_back(info_of_pixels(role.name(), true, pixels));
         }
     if (!here.empty() && policy == NonFinite::fail) refuse_non_finite(here.front());
     if (!here.empty() && policy == NonFinite::mend) {
@@ -56,7 +56,8 @@ std::shared_ptr<const Capture::Data> meet_non_finite(std::shared_ptr<const Captu
 
 std::vector<NonFiniteInfo> non_finite_of(const aftershade::Capture& capture) {
     std::vector<NonFiniteInfo> found;
-    for (const auto& [role, pixels] : capture.non_finite) found.push_back(info_of_pixels(role, true, pixels));
+    for (const auto& [role, pixels] : capture.non_finite)
+        found.push_back(info_of_pixels(role.name(), true, pixels));
     return found;
 }
 

@@ -30,7 +30,7 @@ void check_capture_options(Host::Data& host, const CaptureOptions& options) {
     check_choice("profile", options.profile, profiles, faults);
     check_choice("color_space", options.color_space, color_space_names(), faults);
     for (const std::string& role : options.roles)
-        if (!find_role(role) || is_coverage_role(role))
+        if (!find_role(role))
             faults.error({"CaptureOptions::roles"},
                          "'" + role + "' is not a role" + did_you_mean(role, role_names()));
     if (options.scale_divisor < 1 || options.scale_divisor > kMaxDivisor)
@@ -65,12 +65,11 @@ std::shared_ptr<const Sequence::Data> open_sequence_data(Host::Data& host, const
     return data;
 }
 
-Capture read_capture(const Sequence::Data& data, int frame, int subframe,
-                     const std::vector<std::string>& roles) {
+Capture read_capture(const Sequence::Data& data, int frame, int subframe, const std::vector<RoleId>& roles) {
     const int file = data.sequence.file_number(frame, subframe);
-    const auto wanted = roles.empty() ? data.reader->read_header(file).roles : roles;
     Capture::Data capture;
-    capture.capture = data.reader->read(file, wanted);
+    capture.capture = roles.empty() ? data.reader->read(file, data.reader->read_header(file).roles)
+                                    : data.reader->read(file, roles);
     scale_capture(capture.capture, data.options.scale_divisor);
     capture.capture.header.frame = frame;
     capture.scale = 1.0 / data.options.scale_divisor;
@@ -80,7 +79,7 @@ Capture read_capture(const Sequence::Data& data, int frame, int subframe,
 Capture Capture::read(const Host& host, const std::filesystem::path& path, const CaptureOptions& options) {
     return called(Access::host(host), [&] {
         const auto sequence = open_sequence_data(Access::host(host), path, options);
-        return read_capture(*sequence, sequence->sequence.frames.front(), 0, options.roles);
+        return read_capture(*sequence, sequence->sequence.frames.front(), 0, role_ids(options.roles));
     });
 }
 
@@ -116,7 +115,7 @@ Capture Sequence::read(int frame, int subframe) const {
         if (subframe < 0 || subframe >= data_->sequence.subframes)
             fail_at(ErrorKind::usage, "subframe",
                     fmt::format("{} is not from 0 to {}", subframe, data_->sequence.subframes - 1));
-        return read_capture(*data_, frame, subframe, data_->options.roles);
+        return read_capture(*data_, frame, subframe, role_ids(data_->options.roles));
     });
 }
 

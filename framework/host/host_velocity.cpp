@@ -56,7 +56,8 @@ std::vector<VelocityCheck> check_velocity(const Host& host, const std::filesyste
     Host::Data& data = Access::host(host);
     return called(data, [&] {
         const auto read = [&](const Sequence::Data& from) {
-            return Access::data(read_capture(from, from.sequence.frames.front(), 0, velocity_check_roles()))
+            return Access::data(
+                       read_capture(from, from.sequence.frames.front(), 0, role_ids(velocity_check_roles())))
                 .capture;
         };
         const auto first = open_sequence_data(data, frame, options);

@@ -78,8 +78,7 @@ std::shared_ptr<const Sequence::Data> open_sequence_data(Host::Data& host, const
                                                          const CaptureOptions& options,
                                                          std::vector<std::string> object_names = {});
 /// Reads `roles` (empty: all) of a frame that the sequence has.
-Capture read_capture(const Sequence::Data& data, int frame, int subframe,
-                     const std::vector<std::string>& roles);
+Capture read_capture(const Sequence::Data& data, int frame, int subframe, const std::vector<RoleId>& roles);
 
 /// Capture::notes().
 std::vector<std::string> notes_of(const CaptureHeader& header);

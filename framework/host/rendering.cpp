@@ -54,12 +54,12 @@ void require_same_window(const Capture::Data& capture, const Capture::Data* othe
 }
 
 /// Roles whose values steps take: they must be in memory.
-std::vector<std::string> roles_of_values(const Pipeline& pipeline) {
-    std::vector<std::string> roles;
+std::vector<RoleId> roles_of_values(const Pipeline& pipeline) {
+    std::vector<RoleId> roles;
     for (const PipelineStep& step : pipeline.steps) {
-        for (const std::string& role : roles_of(step.mix)) roles.push_back(role);
+        for (const RoleId& role : roles_of(step.mix)) roles.push_back(role);
         for (const auto& [name, source] : step.values)
-            for (const std::string& role : roles_of(source)) roles.push_back(role);
+            for (const RoleId& role : roles_of(source)) roles.push_back(role);
     }
     return roles;
 }
@@ -198,11 +198,11 @@ aftershade::Image read_texture(gpu::Context& context, const GlTexture& texture, 
 std::shared_ptr<const Capture::Data> with_values_in_memory(
     gpu::Context& context, const std::shared_ptr<const Capture::Data>& capture, const Pipeline& pipeline) {
     std::shared_ptr<Capture::Data> filled;
-    for (const std::string& role : roles_of_values(pipeline)) {
-        const auto texture = capture->textures.find(role);
+    for (const RoleId& role : roles_of_values(pipeline)) {
+        const auto texture = capture->textures.find(role.name());
         if (texture == capture->textures.end()) continue;
         if (!filled) filled = std::make_shared<Capture::Data>(*capture);
-        filled->capture.images[role] = read_texture(context, texture->second, role);
+        filled->capture.images[role] = read_texture(context, texture->second, role.name());
     }
     return filled ? filled : capture;
 }
@@ -234,11 +234,11 @@ Result::Data Rendering::render(const FrameTask& task, const RenderOptions& optio
     if (next) setting.neighbours[1] = {next, &next->capture};
     FrameInputs frame =
         setting.inputs(current->capture, task.subframe, task.centre ? &task.centre->capture : nullptr);
-    frame.fill = [&](const std::string& role, int offset, gpu::Texture& texture) {
+    frame.fill = [&](const RoleId& role, int offset, gpu::Texture& texture) {
         const auto& from = offset == -1 ? previous : offset == 1 ? next : current;
-        const auto found = from->textures.find(role);
+        const auto found = from->textures.find(role.name());
         if (found == from->textures.end()) return false;
-        check_external(context, found->second, role);
+        check_external(context, found->second, role.name());
         gpu::copy_texture(context, external(found->second), texture);
         return true;
     };

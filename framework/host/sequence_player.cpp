@@ -52,10 +52,10 @@ Result::Data SequencePlayer::render(int frame, const RenderOptions& options) {
     if (index == run_.frames.end())
         fail_at(ErrorKind::usage, "frame", "the sequence has no frame " + std::to_string(frame));
     const Pipeline& pipeline = rendering_.look().pipeline;
-    std::vector<std::string> reads = pipeline.capture_roles();
+    std::vector<RoleId> reads = pipeline.capture_roles();
     const std::vector<std::string> made = made_roles(pipeline);
     for (const std::string& role : options.roles)
-        if (std::find(made.begin(), made.end(), role) == made.end()) reads.push_back(role);
+        if (std::find(made.begin(), made.end(), role) == made.end()) reads.emplace_back(role);
     if (!loader_ || reads != asked_) {
         asked_ = reads;
         loader_.reset();

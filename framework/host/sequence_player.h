@@ -32,7 +32,7 @@ private:
     CaptureReader reader_;
     RunOptions run_;
     std::unique_ptr<FrameLoader> loader_;
-    std::vector<std::string> asked_;  // roles that the loader reads
+    std::vector<RoleId> asked_;  // roles that the loader reads
 };
 
 }  // namespace aftershade::host

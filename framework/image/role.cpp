@@ -6,15 +6,17 @@
 #include <utility>
 
 #include "framework/base/text.h"
-#include "framework/document/document.h"
 #include "framework/image/step_role.h"
 
 namespace aftershade {
 
 namespace {
 
-constexpr std::string_view kCoverage = "coverage:";
 constexpr std::string_view kLayer = "layer";
+
+std::string layer_prefix(int layer) {
+    return std::string(kLayer) + std::to_string(layer);
+}
 
 std::vector<std::string> layer(const std::string& name, std::string_view components) {
     std::vector<std::string> channels;
@@ -89,44 +91,47 @@ std::span<const ChannelRole> channel_roles() {
     return roles();
 }
 
-std::optional<ChannelRole> find_role(std::string_view name) {
+std::optional<ChannelRole> find_role(const RoleId& id) {
+    const std::string& name = id.name();
     for (const ChannelRole& role : roles())
         if (role.name == name) return role;
     if (name == kLightChangeRole)
-        return ChannelRole{std::string(name),
+        return ChannelRole{name,
                            3,
                            ComponentType::float32,
                            true,
                            0,
-                           layer(std::string(name), "RGB"),
+                           layer(name, "RGB"),
                            PixelType::half,
                            "light on a surface over that of the frame before; 1 where that is unknown",
                            RoleKind::coverage};
-    if (is_coverage_role(name))
-        return ChannelRole{std::string(name),
+    if (id.is_coverage())
+        return ChannelRole{name,
                            1,
                            ComponentType::float32,
                            true,
                            0,
-                           {std::string(name)},
+                           {name},
                            PixelType::half,
                            "share that objects cover, 0 to 1",
                            RoleKind::coverage};
-    if (const RoleOfLayer of = split_layer_role(name); of.layer >= 0) {
-        std::optional<ChannelRole> role = find_role(of.role);
+    if (id.layer() >= 0) {
+        std::optional<ChannelRole> role = find_role(id.of_any_layer());
         if (!role) return std::nullopt;
         role->name = name;
-        for (std::string& channel : role->native_channels)
-            channel = std::string(kLayer) + std::to_string(of.layer) + "." + channel;
+        for (std::string& channel : role->native_channels) channel = layer_prefix(id.layer()) + "." + channel;
         return role;
     }
     constexpr std::string_view kAov = "aov:";
-    if (name.starts_with(kAov) && name.size() > kAov.size()) {
-        const std::string aov(name.substr(kAov.size()));
-        return ChannelRole{
-            std::string(name), 4, ComponentType::float32, true, 0, layer(aov, "RGBA"), PixelType::half,
-            "passed through"};
-    }
+    if (name.starts_with(kAov) && name.size() > kAov.size())
+        return ChannelRole{name,
+                           4,
+                           ComponentType::float32,
+                           true,
+                           0,
+                           layer(name.substr(kAov.size()), "RGBA"),
+                           PixelType::half,
+                           "passed through"};
     return std::nullopt;
 }
 
@@ -136,46 +141,39 @@ std::vector<std::string> role_names() {
     return names;
 }
 
-std::string coverage_role(std::span<const TableKey> objects) {
-    std::vector<std::string> entries;
-    for (const TableKey& key : objects) entries.push_back(format_object_keys(std::span(&key, 1)));
-    return std::string(kCoverage) + "[" + joined(entries, ", ") + "]";
+std::vector<RoleId> role_ids(std::span<const std::string> names) {
+    return {names.begin(), names.end()};
 }
 
-bool is_coverage_role(std::string_view name) {
-    return name.starts_with(kCoverage);
-}
-
-std::vector<TableKey> objects_of_coverage(std::string_view role) {
-    Diagnostics unused;  // it is our own text
-    std::vector<TableKey> objects;
-    if (const auto list = parse_document(std::string(role.substr(kCoverage.size())), "", unused))
-        for (const Node& entry : list->items)
-            for (TableKey& key : parse_object_keys(entry, "", unused)) objects.push_back(std::move(key));
-    return objects;
-}
-
-std::string layer_role(int layer, std::string_view role) {
-    return std::string(kLayer) + std::to_string(layer) + ":" + std::string(role);
-}
-
-RoleOfLayer split_layer_role(std::string_view name) {
-    const std::size_t colon = name.find(':');
-    const RoleOfLayer whole{-1, std::string(name)};
-    if (!name.starts_with(kLayer) || colon == std::string_view::npos) return whole;
+RoleId::RoleId(std::string name) : name_(std::move(name)) {
+    const std::size_t colon = name_.find(':');
+    if (!name_.starts_with(kLayer) || colon == std::string::npos) return;
     int layer = -1;
-    const char* const end = name.data() + colon;
-    const auto read = std::from_chars(name.data() + kLayer.size(), end, layer);
-    if (read.ec != std::errc() || read.ptr != end || layer < 0) return whole;
-    return {layer, std::string(name.substr(colon + 1))};
+    const char* const end = name_.data() + colon;
+    const auto read = std::from_chars(name_.data() + kLayer.size(), end, layer);
+    if (read.ec != std::errc() || read.ptr != end || layer < 0) return;
+    layer_ = layer;
+    layer_prefix_ = colon + 1;
+}
+
+RoleId RoleId::coverage(std::span<const TableKey> objects) {
+    std::vector<std::string> entries;
+    for (const TableKey& key : objects) entries.push_back(format_object_keys({&key, 1}));
+    RoleId role("coverage of " + joined(entries, ", "));
+    role.objects_.assign(objects.begin(), objects.end());
+    return role;
+}
+
+RoleId RoleId::of_layer(int layer, std::string_view role) {
+    return layer_prefix(layer) + ":" + std::string(role);
 }
 
 bool is_blended(RoleKind kind) {
     return kind == RoleKind::light || kind == RoleKind::coverage || kind == RoleKind::other;
 }
 
-RoleKind kind_of_role(std::string_view name) {
-    const auto role = find_role(name);
+RoleKind kind_of_role(const RoleId& id) {
+    const auto role = find_role(id);
     return role ? role->kind : RoleKind::other;
 }
 

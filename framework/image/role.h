@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <compare>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -59,34 +61,51 @@ struct ChannelRole {
     bool has_optional_alpha() const { return kind == RoleKind::light && channels == 4; }
 };
 
+/// The name of one image of a capture, as documents spell it ("color", "aov:mist"), with what it says: the
+/// layer that the image is of, and the objects whose share of each pixel it holds.
+class RoleId {
+public:
+    /// "layer1:depth" is of a layer; any other name is of the whole picture.
+    RoleId(std::string name);
+    RoleId(std::string_view name) : RoleId(std::string(name)) {}
+    RoleId(const char* name) : RoleId(std::string(name)) {}
+    /// The role of the share of a pixel, 0 to 1, that some objects cover. The program reads it from captures
+    /// where a look names the objects of a mask; no document can.
+    static RoleId coverage(std::span<const TableKey> objects);
+    /// The image of a role in one layer of a capture, 0 in front. Manifests name it by "layer".
+    static RoleId of_layer(int layer, std::string_view role);
+
+    const std::string& name() const { return name_; }
+    /// -1: not of a layer, but of the whole picture.
+    int layer() const { return layer_; }
+    /// Without its layer.
+    std::string of_any_layer() const { return name_.substr(layer_prefix_); }
+    bool is_coverage() const { return !objects_.empty(); }
+    const std::vector<TableKey>& objects() const { return objects_; }
+
+    /// By name, which says all.
+    bool operator==(const RoleId& other) const { return name_ == other.name_; }
+    auto operator<=>(const RoleId& other) const { return name_ <=> other.name_; }
+
+private:
+    std::string name_;
+    int layer_ = -1;
+    std::size_t layer_prefix_ = 0;  // how much of the name says the layer
+    std::vector<TableKey> objects_;
+};
+
 /// The fixed roles, in the order of the documentation.
 std::span<const ChannelRole> channel_roles();
-/// nullopt for an unknown name; a coverage_role() is one; "aov:<name>" is a one-to-four channel image passed
-/// through.
-std::optional<ChannelRole> find_role(std::string_view name);
+/// nullopt for an unknown name; "aov:<name>" is a one-to-four channel image passed through.
+std::optional<ChannelRole> find_role(const RoleId& role);
 std::vector<std::string> role_names();
-
-/// The role of the share of a pixel, 0 to 1, that some objects cover. The program reads it from captures
-/// where a look names the objects of a mask; no document can.
-std::string coverage_role(std::span<const TableKey> objects);
-bool is_coverage_role(std::string_view name);
-/// The objects that coverage_role() was made of.
-std::vector<TableKey> objects_of_coverage(std::string_view role);
-
-/// The image of a role in one layer of a capture, 0 in front: "layer1:depth". Manifests name it by "layer".
-std::string layer_role(int layer, std::string_view role);
-struct RoleOfLayer {
-    int layer = -1;  ///< -1: not of a layer, but of the whole picture
-    std::string role;
-};
-/// The role in a name that layer_role() made; any other name is itself.
-RoleOfLayer split_layer_role(std::string_view name);
+std::vector<RoleId> role_ids(std::span<const std::string> names);
 
 /// Whether the values of layers are put over one another, as light is; of others the layer that shows most
 /// counts: depths, vectors and ids have no mean.
 bool is_blended(RoleKind kind);
 
 /// RoleKind::other for a name that is not a role's.
-RoleKind kind_of_role(std::string_view name);
+RoleKind kind_of_role(const RoleId& role);
 
 }  // namespace aftershade

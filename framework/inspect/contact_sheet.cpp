@@ -207,7 +207,7 @@ std::vector<std::string> ordered_roles(const Capture& capture,
         if (known && std::find(roles.begin(), roles.end(), role) == roles.end()) roles.push_back(role);
     };
     for (const std::string& role : role_names()) add(role);
-    for (const auto& [role, image] : capture.images) add(role);
+    for (const auto& [role, image] : capture.images) add(role.name());
     for (const auto& [role, message] : unreadable) add(role);
     return roles;
 }

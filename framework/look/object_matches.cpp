@@ -94,7 +94,7 @@ double focal_length_px(const CaptureHeader& header, double otherwise_per_width) 
 
 ObjectMatches::ObjectMatches(const Pipeline& pipeline) {
     const auto add = [&](const Place& place, const std::string& user, std::vector<TableKey> keys,
-                         const std::string& role) {
+                         const RoleId& role) {
         Entry entry{.user = to_string(place) + ": " + user, .ranges = id_ranges(keys), .role = role};
         entry.keys = std::move(keys);
         entries_.push_back(std::move(entry));
@@ -109,7 +109,7 @@ ObjectMatches::ObjectMatches(const Pipeline& pipeline) {
                             add(step.places.at(spec.name), step.name + "." + spec.name, {key}, kObjectIdRole);
         if (step.mask && step.mask->names_objects())
             add(step.mask->place, "the mask of step '" + step.name + "'", step.mask->objects,
-                coverage_role(step.mask->objects));
+                RoleId::coverage(step.mask->objects));
         else if (step.mask)
             for (const TableKey& key : step.mask->objects)
                 add(step.mask->place, "the mask of step '" + step.name + "'", {key}, kObjectIdRole);
@@ -163,7 +163,7 @@ void ObjectMatches::add_entries_of_scattering(const PipelineStep& step) {
 
 bool ObjectMatches::is_in(const Entry& entry, const Capture& capture,
                           const std::vector<std::uint32_t>& ids) const {
-    if (is_coverage_role(entry.role)) {
+    if (entry.role.is_coverage()) {
         const auto values = capture.images.at(entry.role).floats();
         return std::ranges::any_of(values, [](float share) { return share > 0; });
     }

@@ -45,7 +45,7 @@ private:
         std::string user;  ///< "look.json:4:12: motion_blur.objects"
         std::vector<TableKey> keys{};
         std::vector<IdRange> ranges{};
-        std::string role;  ///< to search: object_id, or the coverage of a mask
+        RoleId role;  ///< to search: object_id, or the coverage of a mask
         Asks asks = Asks::named;
         bool has_mask_input = false;  ///< few: the step takes the capture's mask
         double length_m = 0;          ///< wide: how far light goes

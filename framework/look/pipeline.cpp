@@ -1,6 +1,7 @@
 #include "framework/look/pipeline.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "framework/base/error.h"
 #include "framework/base/option.h"
@@ -15,11 +16,13 @@ namespace aftershade {
 
 namespace {
 
-bool contains(const std::vector<std::string>& list, const std::string& item) {
+template <typename T>
+bool contains(const std::vector<T>& list, const std::type_identity_t<T>& item) {
     return std::find(list.begin(), list.end(), item) != list.end();
 }
 
-void add_once(std::vector<std::string>& list, const std::string& item) {
+template <typename T>
+void add_once(std::vector<T>& list, const std::type_identity_t<T>& item) {
     if (!contains(list, item)) list.push_back(item);
 }
 
@@ -32,13 +35,13 @@ std::string list_channels(const std::vector<std::string>& channels) {
 }
 
 /// Roles that the step's values, mix and mask are taken from.
-std::vector<std::string> host_roles(const PipelineStep& step) {
-    std::vector<std::string> roles = roles_of(step.mix);
+std::vector<RoleId> host_roles(const PipelineStep& step) {
+    std::vector<RoleId> roles = roles_of(step.mix);
     for (const auto& [name, value] : step.values)
-        for (const std::string& role : roles_of(value)) add_once(roles, role);
+        for (const RoleId& role : roles_of(value)) add_once(roles, role);
     if (step.mask && !step.mask->role.empty()) add_once(roles, step.mask->role);
     if (step.mask && !step.mask->objects.empty())
-        add_once(roles, step.mask->names_objects() ? coverage_role(step.mask->objects) : kObjectIdRole);
+        add_once(roles, step.mask->names_objects() ? RoleId::coverage(step.mask->objects) : kObjectIdRole);
     return roles;
 }
 
@@ -67,8 +70,8 @@ std::vector<ParamValue> PipelineStep::known_values(const ParamSpec& spec) const 
     return known;
 }
 
-std::vector<std::string> Pipeline::capture_roles() const {
-    std::vector<std::string> roles{kColorRole};
+std::vector<RoleId> Pipeline::capture_roles() const {
+    std::vector<RoleId> roles{kColorRole};
     for (const PipelineStep& step : steps) {
         for (const InputSpec& input : step.manifest->inputs) {
             const InputSource& source = step.inputs.at(input.name);
@@ -76,7 +79,7 @@ std::vector<std::string> Pipeline::capture_roles() const {
         }
         for (const auto& [output, source] : step.before)
             if (source.step < 0) add_once(roles, source.output);
-        for (const std::string& role : host_roles(step)) add_once(roles, role);
+        for (const RoleId& role : host_roles(step)) add_once(roles, role);
     }
     return roles;
 }
@@ -94,8 +97,8 @@ std::vector<std::string> Pipeline::object_names() const {
     return names;
 }
 
-std::vector<std::string> Pipeline::neighbour_roles(int offset) const {
-    std::vector<std::string> roles;
+std::vector<RoleId> Pipeline::neighbour_roles(int offset) const {
+    std::vector<RoleId> roles;
     for (const PipelineStep& step : steps)
         for (const InputSpec& input : step.manifest->inputs)
             if (input.frame == offset && step.may_take(input))
@@ -199,9 +202,9 @@ std::vector<MissingRole> find_missing_roles(const Pipeline& pipeline, const Capt
         for (const auto& [output, source] : step.before)
             if (source.step < 0 && !contains(roles, source.output))
                 add("the mix of step '" + step.name + "'", source.output);
-        for (const std::string& role : host_roles(step))
-            if (!contains(roles, role) && !is_coverage_role(role))
-                add("a value or the mask of step '" + step.name + "'", role);
+        for (const RoleId& role : host_roles(step))
+            if (!role.is_coverage() && !contains(roles, role.name()))
+                add("a value or the mask of step '" + step.name + "'", role.name());
     }
     if (!contains(roles, kColorRole) && !pipeline.writes_role(kDisplayRole)) add("the output", kColorRole);
     return missing;

@@ -69,12 +69,12 @@ struct Pipeline {
     std::vector<Tap> taps;
 
     /// Roles that some step takes from the capture, required or not, and `color` for the outputs.
-    std::vector<std::string> capture_roles() const;
+    std::vector<RoleId> capture_roles() const;
     /// Objects that parameters of steps name, for which object_id must hold the hashes of names; masks
     /// and values from pixels take their coverage instead.
     std::vector<std::string> object_names() const;
     /// Roles that some input takes from the capture `offset` frames after, or before where it is negative.
-    std::vector<std::string> neighbour_roles(int offset) const;
+    std::vector<RoleId> neighbour_roles(int offset) const;
     /// Offsets of the captures that some input takes, without 0.
     std::set<int> neighbour_offsets() const;
     bool writes_role(const std::string& role) const;
@@ -99,11 +99,11 @@ struct FrameInputs {
     double scale = 1;  ///< of the capture's pixels relative to those that values in px refer to
     double fps = 24;
     /// Fills the texture of a capture's image that is not in memory; false where it is. Empty: each is.
-    std::function<bool(const std::string& role, int offset, gpu::Texture& texture)> fill{};
+    std::function<bool(const RoleId& role, int offset, gpu::Texture& texture)> fill{};
 
     const Capture* at(int offset) const;
     /// Whether there is a capture at that offset, with an image of that role.
-    bool has_image(const std::string& role, int offset) const {
+    bool has_image(const RoleId& role, int offset) const {
         const Capture* const from = at(offset);
         return from && from->images.contains(role);
     }

@@ -199,16 +199,16 @@ private:
 
 /// By their coverage where they have names: so a look may name materials beside objects, which no single
 /// object_id has.
-std::string role_of_objects(const std::vector<TableKey>& objects) {
+RoleId role_of_objects(const std::vector<TableKey>& objects) {
     const bool has_name = std::ranges::any_of(objects, [](const TableKey& key) { return !key.name.empty(); });
-    return has_name ? coverage_role(objects) : std::string(kObjectIdRole);
+    return has_name ? RoleId::coverage(objects) : kObjectIdRole;
 }
 
 /// The pixels that the objects cover by half or more.
 std::vector<std::size_t> pixels_of_objects(const std::vector<TableKey>& objects, const Capture& capture) {
     std::vector<std::size_t> pixels;
     const auto coverage = capture.images.find(role_of_objects(objects));
-    if (coverage != capture.images.end() && is_coverage_role(coverage->first)) {
+    if (coverage != capture.images.end() && coverage->first.is_coverage()) {
         const auto shares = coverage->second.floats();
         for (std::size_t i = 0; i < shares.size(); ++i)
             if (shares[i] >= 0.5f) pixels.push_back(i);
@@ -318,13 +318,13 @@ std::string format_source(const ValueSource& source) {
     return "{\"keys\": {" + text + "}, \"interpolation\": " + format_ease(keyed.ease) + "}";
 }
 
-std::vector<std::string> roles_of(const ValueSource& source) {
-    std::vector<std::string> roles;
-    const auto add = [&](std::string role) {
+std::vector<RoleId> roles_of(const ValueSource& source) {
+    std::vector<RoleId> roles;
+    const auto add = [&](RoleId role) {
         if (std::ranges::find(roles, role) == roles.end()) roles.push_back(std::move(role));
     };
     for (const PixelValue* value : pixel_values(source)) {
-        add(std::string(value->measure == PixelValue::Measure::depth ? kDepthRole : kColorRole));
+        add(value->measure == PixelValue::Measure::depth ? kDepthRole : kColorRole);
         if (!value->objects.empty()) add(role_of_objects(value->objects));
     }
     return roles;
@@ -362,11 +362,10 @@ ParamValue evaluate(const ValueSource& source, const ParamSpec& spec, const std:
         return *value;
     }
     const auto& pixels = std::get<PixelValue>(source);
-    for (const std::string& role : roles_of(source))
-        if (!capture.images.contains(role) &&
-            !(is_coverage_role(role) && capture.images.contains(kObjectIdRole)))
+    for (const RoleId& role : roles_of(source))
+        if (!capture.images.contains(role) && !(role.is_coverage() && capture.images.contains(kObjectIdRole)))
             refuse(label, capture.header,
-                   "the capture has no " + (is_coverage_role(role) ? std::string(kObjectIdRole) : role));
+                   "the capture has no " + (role.is_coverage() ? std::string(kObjectIdRole) : role.name()));
     const double value =
         pixels.uv ? value_at_point(pixels, label, capture) : median_of_objects(pixels, label, capture);
     return fitted(*convert_unit(value, unit_of(pixels.measure), spec.unit), spec, label,

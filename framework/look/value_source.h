@@ -58,7 +58,7 @@ std::optional<ValueSource> parse_value_source(const ParamSpec& spec, const Node&
 std::string format_source(const ValueSource& source);
 
 /// Roles that the value is taken from: depth or color; object_id, or the coverage of named objects.
-std::vector<std::string> roles_of(const ValueSource& source);
+std::vector<RoleId> roles_of(const ValueSource& source);
 
 /// The value for one frame. Throws Error(ErrorKind::capture) naming `label` where the capture lacks what it
 /// is taken from or gives a value outside the range of `spec`.

@@ -16,7 +16,7 @@ namespace aftershade {
 
 /// An image of the capture before (-1), of (0) or after (+1) the frame.
 struct CaptureBinding {
-    std::string role;
+    RoleId role;
     int offset = 0;
     graph::TextureHandle texture;
 };

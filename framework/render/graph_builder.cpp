@@ -267,7 +267,7 @@ void GraphBuilder::declare_buffer(StepBuild& build, const BufferSpec& spec) {
     build.buffers[spec.name] = history.current;
 }
 
-graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
+graph::TextureHandle GraphBuilder::import(const RoleId& role, int offset) {
     const std::pair image(role, offset);
     const auto known = imports_.find(image);
     if (known != imports_.end()) return known->second;
@@ -279,7 +279,7 @@ graph::TextureHandle GraphBuilder::import(const std::string& role, int offset) {
     // Passes that run once a frame may need what those of each sub-frame have left.
     const bool is_given_each_run = pipeline_.last_accumulating_step() < 0;
     return imports_[image] = graph_.import_texture(
-               where + role, {frame_.width_px(), frame_.height_px(), texture_format_of_role(role)},
+               where + role.name(), {frame_.width_px(), frame_.height_px(), texture_format_of_role(role)},
                is_given_each_run);
 }
 
@@ -361,7 +361,7 @@ void GraphBuilder::add_mix(StepBuild& build) {
         graph::Pass pass;
         pass.name = step.name + "." + name + ".mix";
         std::vector<std::string> defines;
-        const auto mask_image = [&](const std::string& role) { return on_grid(import(role), {-1, role}); };
+        const auto mask_image = [&](const RoleId& role) { return on_grid(import(role), {-1, role.name()}); };
         const graph::TextureHandle before = on_grid(resolve(source), source);
         pass.reads = {{before, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(before)},
                       {build.textures.at(name), 1}};
@@ -369,9 +369,9 @@ void GraphBuilder::add_mix(StepBuild& build) {
             defines = {"MASK_IMAGE"};
             pass.reads.push_back({mask_image(step.mask->role), 2});
         } else if (step.mask && step.mask->names_objects() &&
-                   frame_.has_image(coverage_role(step.mask->objects), 0)) {
+                   frame_.has_image(RoleId::coverage(step.mask->objects), 0)) {
             defines = {"MASK_IMAGE"};
-            pass.reads.push_back({mask_image(coverage_role(step.mask->objects)), 2});
+            pass.reads.push_back({mask_image(RoleId::coverage(step.mask->objects)), 2});
         } else if (step.mask && !step.mask->objects.empty()) {
             defines = {"MASK_OBJECTS"};
             pass.reads.push_back({mask_image(kObjectIdRole), 2});

@@ -60,7 +60,7 @@ public:
 private:
     void add_step(int index);
     std::vector<std::string> present_inputs(int index);
-    graph::TextureHandle import(const std::string& role, int offset = 0);
+    graph::TextureHandle import(const RoleId& role, int offset = 0);
     graph::TextureHandle resolve(const InputSource& source, int offset = 0);
     /// What the texels of a step's images are: of square pixels or the capture's, in the display window or
     /// the data's.
@@ -119,7 +119,7 @@ private:
     graph::FrameGraph graph_;
     PassPrograms programs_;
     std::unique_ptr<BuiltGraph> built_;
-    std::map<std::pair<std::string, int>, graph::TextureHandle> imports_;  // by role and offset
+    std::map<std::pair<RoleId, int>, graph::TextureHandle> imports_;  // by role and offset
     /// By texture, version, is_single_ and the grid that it is on.
     std::map<std::tuple<int, int, bool, bool, bool>, graph::TextureHandle> converted_;
     std::map<int, graph::TextureHandle> masks_;  // by step

@@ -108,8 +108,8 @@ GraphFrameReader::DisplayWindow GraphFrameReader::display_window(bool is_square)
     return {int(values[0]), int(values[1]), int(values[2]), int(values[3])};
 }
 
-bool GraphFrameReader::has_image(const std::string& role, int offset) {
-    return std::get<bool>(ask({About::image, offset, role}));
+bool GraphFrameReader::has_image(const RoleId& role, int offset) {
+    return std::get<bool>(ask({About::image, offset, role.name()}));
 }
 
 bool GraphFrameReader::wants(const std::string& role) {

@@ -87,7 +87,7 @@ public:
     };
     DisplayWindow display_window(bool is_square);
     /// `offset`: of which capture, in frames.
-    bool has_image(const std::string& role, int offset);
+    bool has_image(const RoleId& role, int offset);
     bool wants(const std::string& role);
     /// Refers to this reader.
     ParamReader params(int step);

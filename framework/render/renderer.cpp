@@ -18,14 +18,14 @@ namespace aftershade {
 
 namespace {
 
-bool infinity_allowed(const std::string& role) {
+bool infinity_allowed(const RoleId& role) {
     return std::isinf(find_role(role)->outside);
 }
 
-void audit_input(const std::string& role, const Image& image, std::vector<AuditFinding>& findings) {
+void audit_input(const RoleId& role, const Image& image, std::vector<AuditFinding>& findings) {
     if (image.type() != ComponentType::float32) return;
     audit_values({image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture",
-                  "capture." + role},
+                  "capture." + role.name()},
                  findings);
 }
 

@@ -48,10 +48,10 @@ FrameFingerprints::FrameFingerprints(std::string setup, const Sequence& sequence
       pipeline_(pipeline),
       run_(std::move(run)),
       files_(sequence, reader, pipeline) {
-    for (const std::string& role : pipeline.capture_roles())
+    for (const RoleId& role : pipeline.capture_roles())
         reads_motion_ = reads_motion_ || kind_of_role(role) == RoleKind::motion;
     for (const int offset : pipeline.neighbour_offsets())
-        for (const std::string& role : pipeline.neighbour_roles(offset))
+        for (const RoleId& role : pipeline.neighbour_roles(offset))
             reads_motion_ = reads_motion_ || kind_of_role(role) == RoleKind::motion;
 }
 

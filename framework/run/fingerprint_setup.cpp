@@ -77,12 +77,12 @@ std::string capture_text(const FingerprintSource& source) {
     return text;
 }
 
-std::vector<std::string> roles_read(const FingerprintSource& source) {
-    std::vector<std::string> roles = source.pipeline.capture_roles();
-    const auto add = [&](const std::vector<std::string>& more) {
+std::vector<RoleId> roles_read(const FingerprintSource& source) {
+    std::vector<RoleId> roles = source.pipeline.capture_roles();
+    const auto add = [&](const std::vector<RoleId>& more) {
         roles.insert(roles.end(), more.begin(), more.end());
     };
-    add(source.outputs.roles);
+    add(role_ids(source.outputs.roles));
     for (const int offset : source.pipeline.neighbour_offsets()) add(source.pipeline.neighbour_roles(offset));
     return roles;
 }

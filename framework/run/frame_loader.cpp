@@ -18,8 +18,8 @@ namespace aftershade {
 
 namespace {
 
-void add_missing(std::vector<std::string>& list, const std::vector<std::string>& items) {
-    for (const std::string& item : items)
+void add_missing(std::vector<RoleId>& list, const std::vector<RoleId>& items) {
+    for (const RoleId& item : items)
         if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
@@ -83,7 +83,7 @@ private:
 }  // namespace
 
 FrameLoader::FrameLoader(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline,
-                         const RunOptions& run, std::vector<std::string> roles)
+                         const RunOptions& run, std::vector<RoleId> roles)
     : sequence_(sequence),
       reader_(reader),
       pipeline_(pipeline),
@@ -154,8 +154,8 @@ std::optional<Capture> FrameLoader::outline(std::size_t index) const {
         return std::nullopt;  // take() says why
     }
     const auto& there = capture.header.roles;
-    for (const std::string& role : roles_)
-        if (is_coverage_role(role) || std::ranges::find(there, role) != there.end()) capture.images[role];
+    for (const RoleId& role : roles_)
+        if (role.is_coverage() || std::ranges::find(there, role) != there.end()) capture.images[role];
     return capture;
 }
 

@@ -24,7 +24,7 @@ public:
     using CapturePointer = std::shared_ptr<const Capture>;
 
     FrameLoader(const Sequence& sequence, const CaptureReader& reader, const Pipeline& pipeline,
-                const RunOptions& run, std::vector<std::string> roles);
+                const RunOptions& run, std::vector<RoleId> roles);
     ~FrameLoader();
 
     /// Whether a file of the `index`-th frame of the run is not there.
@@ -66,7 +66,7 @@ private:
     const Pipeline& pipeline_;
     const RunOptions& run_;
     FrameFiles files_;
-    std::vector<std::string> roles_;
+    std::vector<RoleId> roles_;
     std::optional<RegionNeeds> region_needs_;
     std::map<int, std::shared_future<CapturePointer>> reads_;  // by file
     CapturePointer last_;

@@ -11,7 +11,7 @@ namespace aftershade {
 
 namespace {
 
-bool may_be_infinite(const std::string& role) {
+bool may_be_infinite(const RoleId& role) {
     const auto known = find_role(role);
     return known && std::isinf(known->outside);
 }
@@ -40,18 +40,18 @@ std::string mended_text(const NonFinitePixels& pixels) {
 }
 
 /// What decoding makes of NaN; "" where it keeps it.
-std::string decoded_as(const std::string& role) {
+std::string decoded_as(const RoleId& role) {
     const auto kind = kind_of_role(role);
     if (kind == RoleKind::distance) return "no hit";
     return kind == RoleKind::motion ? "no motion data" : "";
 }
 
-std::string decoded_text(NanPolicy policy, const std::string& role) {
+std::string decoded_text(NanPolicy policy, const RoleId& role) {
     const std::string decoded = decoded_as(role);
     return policy == NanPolicy::fail || decoded.empty() ? "" : "; read as " + decoded;
 }
 
-std::string remedy(NanPolicy policy, const std::string& role = "") {
+std::string remedy(NanPolicy policy, const RoleId& role = "") {
     const std::string decoded = decoded_as(role);
     const std::string mend = spelled(Option::on_nan, "mend") + " replaces such pixels";
     const std::string fail = spelled(Option::on_nan, "fail");
@@ -64,7 +64,7 @@ std::string remedy(NanPolicy policy, const std::string& role = "") {
 std::string source_text(const Capture& capture) {
     std::vector<std::string> roles;
     for (const auto& [role, pixels] : capture.non_finite)
-        if (pixels.mended == 0) roles.push_back(role);
+        if (pixels.mended == 0) roles.push_back(role.name());
     if (roles.empty())
         return "; what effects read has none, so an effect made them" +
                advice(": ", Option::audit, "", " names its pass");
@@ -104,7 +104,7 @@ std::vector<NonFiniteOutput> apply_nan_policy(NanPolicy policy, FrameResult& res
 std::vector<std::string> describe_non_finite(NanPolicy policy, const Capture& capture) {
     std::vector<std::string> sentences;
     for (const auto& [role, pixels] : capture.non_finite)
-        sentences.push_back("frame " + std::to_string(capture.header.frame) + ": the role '" + role +
+        sentences.push_back("frame " + std::to_string(capture.header.frame) + ": the role '" + role.name() +
                             "' of " + capture.header.path.string() + " has " + counts_text(pixels) +
                             decoded_text(policy, role) +
                             (pixels.mended > 0 ? mended_text(pixels) : remedy(policy, role)));

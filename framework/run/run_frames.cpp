@@ -99,10 +99,10 @@ struct PendingWrite {
     std::string message{};  ///< for reports
 };
 
-std::vector<std::string> roles_to_read(const Pipeline& pipeline, const OutputOptions& outputs) {
-    std::vector<std::string> roles = pipeline.capture_roles();
+std::vector<RoleId> roles_to_read(const Pipeline& pipeline, const OutputOptions& outputs) {
+    std::vector<RoleId> roles = pipeline.capture_roles();
     for (const std::string& role : outputs.roles)
-        if (std::find(roles.begin(), roles.end(), role) == roles.end()) roles.push_back(role);
+        if (std::find(roles.begin(), roles.end(), role) == roles.end()) roles.emplace_back(role);
     return roles;
 }
 

@@ -38,7 +38,7 @@ Json capture_json(const ServedCapture& capture) {
     const CaptureHeader& header = capture.header;
     Json roles = Json::array();
     for (const std::string& name : header.roles) {
-        const auto contract = find_role(split_layer_role(name).role);
+        const auto contract = find_role(name);
         const auto stored = header.role_channels.find(name);
         roles.push_back({{"name", name},
                          {"unit", unit_of_role(name)},

@@ -71,16 +71,17 @@ Pipeline pipeline_of(const PictureRequest& request) {
     return pipeline;
 }
 
-std::string joined_roles(const std::vector<std::string>& roles) {
+std::string joined_roles(std::span<const RoleId> roles) {
     std::string text;
-    for (const std::string& role : roles) text += role + "\n";
+    for (const RoleId& role : roles) text += role.name() + "\n";
     return text;
 }
 
 }  // namespace
 
 PictureMaker::PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits,
-                           const gpu::GlChoice& gl, std::filesystem::path data_folder, StatusWriter& status)
+                           const gpu::GlChoice& gl, const std::filesystem::path& data_folder,
+                           StatusWriter& status)
     : sequence_(std::move(sequence)),
       reader_(sequence_, std::move(profiles), limits),
       limits_(limits),
@@ -112,8 +113,8 @@ void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request, Pipeline
 /// Whether the captures are those of the last call.
 bool PictureMaker::load(Scaled& scaled, const PictureRequest& request) {
     const Pipeline& pipeline = *scaled.pipeline;
-    std::vector<std::string> reads = pipeline.capture_roles();
-    std::string key = joined_roles(reads) + "objects\n" + joined_roles(pipeline.object_names());
+    std::vector<RoleId> reads = pipeline.capture_roles();
+    std::string key = joined_roles(reads) + "objects\n" + joined(pipeline.object_names(), "\n") + "\n";
     for (const int offset : pipeline.neighbour_offsets())
         key += "offset " + std::to_string(offset) + "\n" + joined_roles(pipeline.neighbour_roles(offset));
     key += std::to_string(pipeline.last_accumulating_step() >= 0);
@@ -172,10 +173,9 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
     adopt(scaled, request, std::move(pipeline));
     const bool follows = request.continues && is_next(scaled, request.frame) && scaled.form == form_before;
     const bool is_same = load(scaled, request);
-    const std::string asked = joined_roles(roles);
     drawn_ = 0;
     const bool is_here = is_same && scaled.is_current && scaled.revision == request.look->revision &&
-                         scaled.roles_asked == asked && scaled.form == form_before;
+                         scaled.roles_asked == roles && scaled.form == form_before;
     if (!is_here) {
         scaled.is_current = false;
         scaled.result = draw_subframes(scaled, roles,
@@ -185,7 +185,7 @@ PictureMaker::Scaled& PictureMaker::draw(const PictureRequest& request) {
         drawn_ = scaled.renderer->steps_drawn();
         scaled.is_current = true;
         scaled.revision = request.look->revision;
-        scaled.roles_asked = asked;
+        scaled.roles_asked = roles;
     } else {
         scaled.result.times.clear();
     }

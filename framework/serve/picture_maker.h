@@ -46,7 +46,7 @@ public:
     /// Copies the sequence; `status`, which receives the pass at work, must outlive this. Throws
     /// Error(ErrorKind::gl) without a context.
     PictureMaker(Sequence sequence, std::vector<Profile> profiles, ReadLimits limits, const gpu::GlChoice& gl,
-                 std::filesystem::path data_folder, StatusWriter& status);
+                 const std::filesystem::path& data_folder, StatusWriter& status);
     ~PictureMaker();
 
     const gpu::ContextInfo& gl() const { return context_.info(); }
@@ -84,7 +84,7 @@ private:
         std::unique_ptr<Pipeline> pipeline;
         std::shared_ptr<const BoundText> look;  // owns the manifests that the renderer refers to
         int form = 0;                           // counts changes of the pipeline that ask for another graph
-        std::string roles_asked;
+        std::vector<std::string> roles_asked;
         std::unique_ptr<PipelineRenderer> renderer;
         std::unique_ptr<Loaded> loaded;
         bool is_current = false;  // `result` is of what follows

@@ -202,8 +202,8 @@ std::pair<double, double> sharp_range_m(const Image& coc, const Capture& capture
     return range;
 }
 
-std::string unit_of_role(const std::string& role) {
-    switch (kind_of_role(split_layer_role(role).role)) {
+std::string unit_of_role(const RoleId& role) {
+    switch (kind_of_role(role)) {
         case RoleKind::distance:
         case RoleKind::place: return "m";
         case RoleKind::motion: return "px";
@@ -272,7 +272,7 @@ Json probe_json(const Capture& capture, int x, int y) {
     Json json = {{"x", x}, {"y", y}, {"roles", Json::array()}};
     const auto place = place_of_pixel(capture.header, x, y);
     for (const auto& [role, image] : capture.images) {
-        Json entry = {{"name", role}, {"unit", unit_of_role(role)}, {"values", Json::array()}};
+        Json entry = {{"name", role.name()}, {"unit", unit_of_role(role)}, {"values", Json::array()}};
         if (is_inside(image, place)) entry["values"] = values_at(image, place.first, place.second);
         json["roles"].push_back(std::move(entry));
     }

@@ -54,7 +54,7 @@ std::pair<double, double> sharp_range_m(const Image& coc, const Capture& capture
 Tap tap_of(const std::string& view, const Pipeline& pipeline);
 
 /// "m", "px"; "" for pure numbers.
-std::string unit_of_role(const std::string& role);
+std::string unit_of_role(const RoleId& role);
 
 /// The place of a picture's pixel in the images of a capture.
 std::pair<int, int> place_of_pixel(const CaptureHeader& header, int x, int y);

@@ -93,7 +93,7 @@ TEST_P(EveryProfile, IsReadBackToWhatWasWritten) {
     ASSERT_TRUE(sequence);
     sequence->profile = GetParam();
     const CaptureReader reader(*sequence, profiles_, {});
-    std::vector<std::string> roles;
+    std::vector<RoleId> roles;
     for (const auto& [role, image] : capture.images) roles.push_back(role);
     const Capture back = reader.read(7, roles);
     EXPECT_EQ(back.images.size() + left_out.size(), capture.images.size());
@@ -103,18 +103,20 @@ TEST_P(EveryProfile, IsReadBackToWhatWasWritten) {
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
                 if (image.type() == ComponentType::uint32) {
-                    ASSERT_EQ(image.uint_at(x, y, 0), original.uint_at(x, y, 0)) << role;
+                    ASSERT_EQ(image.uint_at(x, y, 0), original.uint_at(x, y, 0)) << role.name();
                     continue;
                 }
                 for (int c = 0; c < image.channels(); ++c) {
                     const float expected = original.at(x, y, c), found = image.at(x, y, c);
-                    if (std::isinf(expected)) ASSERT_EQ(found, expected) << role;
+                    if (std::isinf(expected)) ASSERT_EQ(found, expected) << role.name();
                     else if (role == "depth")
-                        ASSERT_NEAR(found, expected, 2e-5 * expected) << role << " " << x << " " << y;
-                    else if (role.starts_with("velocity")) ASSERT_NEAR(found, expected, 1e-3) << role;
+                        ASSERT_NEAR(found, expected, 2e-5 * expected) << role.name() << " " << x << " " << y;
+                    else if (role.name().starts_with("velocity"))
+                        ASSERT_NEAR(found, expected, 1e-3) << role.name();
                     // Of some profiles light times albedo, and back.
-                    else if (role == "irradiance") ASSERT_NEAR(found, expected, 1e-6 * expected) << role;
-                    else ASSERT_EQ(found, expected) << role;
+                    else if (role == "irradiance")
+                        ASSERT_NEAR(found, expected, 1e-6 * expected) << role.name();
+                    else ASSERT_EQ(found, expected) << role.name();
                 }
             }
     }

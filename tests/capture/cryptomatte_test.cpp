@@ -113,9 +113,9 @@ TEST(Coverage, OfObjectsThatALookNamesNeedsNothingInTheCapture) {
     const TemporaryFolder folder;
     const auto path = write_matte(folder, {{"Cube", 0.5f}, {"Suzanne", 0.25f}}, PixelType::float32);
     Sequence sequence;
-    const std::string role = coverage_role(std::vector<TableKey>{{0, 0, "Suzanne"}, {0, 0, "Pole"}});
+    const RoleId role = RoleId::coverage(std::vector<TableKey>{{0, 0, "Suzanne"}, {0, 0, "Pole"}});
     EXPECT_EQ(find_role(role)->kind, RoleKind::coverage);
-    const Capture capture = reader_of(sequence, path).read(1, std::vector<std::string>{role});
+    const Capture capture = reader_of(sequence, path).read(1, std::vector<RoleId>{role});
     EXPECT_FLOAT_EQ(capture.images.at(role).at(0, 0, 0), 0.25f);
     EXPECT_FLOAT_EQ(capture.images.at(role).at(1, 0, 0), 0);
 }
@@ -124,7 +124,7 @@ TEST(Coverage, OfAnObjectThatTheManifestLacksIsRefused) {
     const TemporaryFolder folder;
     Sequence sequence;
     const CaptureReader reader = reader_of(sequence, write_matte(folder, {{"Cube", 1}}, PixelType::float32));
-    const std::vector<std::string> roles = {coverage_role(std::vector<TableKey>{{0, 0, "Cub"}})};
+    const std::vector<RoleId> roles = {RoleId::coverage(std::vector<TableKey>{{0, 0, "Cub"}})};
     const std::string message = capture_error([&] { reader.read(1, roles); });
     EXPECT_NE(message.find("has no object 'Cub'; did you mean 'Cube'?"), std::string::npos) << message;
 }
@@ -144,13 +144,13 @@ TEST(Coverage, IsRefusedWhereObjectsHaveNumbersAndNoNames) {
     write_exr(folder / "ids.exr", channels, options);
     Sequence sequence;
     const CaptureReader reader = reader_of(sequence, folder / "ids.exr");
-    const std::vector<std::string> roles = {coverage_role(std::vector<TableKey>{{0, 0, "Suzanne"}})};
+    const std::vector<RoleId> roles = {RoleId::coverage(std::vector<TableKey>{{0, 0, "Suzanne"}})};
     const std::string message = capture_error([&] { reader.read(1, roles); });
     EXPECT_NE(message.find("names the object 'Suzanne', but object_id is read from V.IndexOB.X, which holds "
                            "numbers, and the file has no Cryptomatte (render a Cryptomatte of objects"),
               std::string::npos)
         << message;
-    const std::vector<std::string> by_number = {coverage_role(std::vector<TableKey>{{7, 7, ""}})};
+    const std::vector<RoleId> by_number = {RoleId::coverage(std::vector<TableKey>{{7, 7, ""}})};
     EXPECT_EQ(reader.read(1, by_number).images.at(by_number[0]).at(0, 0, 0), 1);
 }
 
@@ -182,9 +182,9 @@ TEST(ObjectIds, OfALookMayBeNumbersAndNames) {
     Sequence sequence;
     const CaptureReader reader = reader_of(sequence, write_matte_and_numbers(folder, 9));
     sequence.object_names = {"Cube"};
-    const auto role_of = [](std::vector<TableKey> keys) { return coverage_role(keys); };
-    const std::vector<std::string> roles = {role_of({{0, 0, "Cube"}}), role_of({{7, 7, ""}}),
-                                            role_of({{9, 9, ""}, {0, 0, "Cube"}}), "object_id"};
+    const auto role_of = [](std::vector<TableKey> keys) { return RoleId::coverage(keys); };
+    const std::vector<RoleId> roles = {role_of({{0, 0, "Cube"}}), role_of({{7, 7, ""}}),
+                                       role_of({{9, 9, ""}, {0, 0, "Cube"}}), "object_id"};
     const Capture capture = reader.read(1, roles);
     const auto coverage = [&](int role, int x) {
         return capture.images.at(roles[std::size_t(role)]).at(x, 0, 0);
@@ -267,15 +267,15 @@ std::filesystem::path write_manifest(const TemporaryFolder& folder, const std::s
     return folder / "matte.exr";
 }
 
-std::string coverage_of(const std::string& object) {
+RoleId coverage_of(const std::string& object) {
     const std::vector<TableKey> keys = {{0, 0, object}};
-    return coverage_role(keys);
+    return RoleId::coverage(keys);
 }
 
 Capture read_object(const std::filesystem::path& path, const std::string& object) {
     Sequence sequence;
     sequence.object_names = {object};
-    return reader_of(sequence, path).read(1, std::vector<std::string>{"object_id", coverage_of(object)});
+    return reader_of(sequence, path).read(1, std::vector<RoleId>{"object_id", coverage_of(object)});
 }
 
 TEST(CryptomatteManifest, MayLieBesideTheFile) {

@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
+using Roles = std::vector<RoleId>;
 
 const std::vector<Profile>& profiles_of_deep() {
     static const std::vector<Profile> profiles = [] {
@@ -27,7 +28,7 @@ const std::vector<Profile>& profiles_of_deep() {
     return profiles;
 }
 
-Capture read_deep_capture(const fs::path& file, const Names& roles, int layers = kDefaultDeepLayers) {
+Capture read_deep_capture(const fs::path& file, const Roles& roles, int layers = kDefaultDeepLayers) {
     Sequence sequence;
     sequence.files = FramePattern(file.string());
     sequence.deep_layers = layers;
@@ -62,12 +63,12 @@ TEST(DeepCapture, IsAFlatPictureForWhoeverAsksForNoLayer) {
 TEST(DeepCapture, HasTheWallBehindTheGlassInItsSecondLayer) {
     const TemporaryFolder folder;
     write_deep(folder / "a.exr", glass_before_wall(), {2});
-    const Names roles = {"color", layer_role(0, "color"), layer_role(0, "depth"), layer_role(1, "color"),
-                         layer_role(1, "depth")};
+    const Roles roles = {"color", RoleId::of_layer(0, "color"), RoleId::of_layer(0, "depth"),
+                         RoleId::of_layer(1, "color"), RoleId::of_layer(1, "depth")};
     const Capture capture = read_deep_capture(folder / "a.exr", roles);
     EXPECT_EQ(capture.deep_layers, 2);  // as many as are asked for
     const auto value = [&](int layer, const char* role, int x, int channel) {
-        return capture.images.at(layer_role(layer, role)).at(x, 0, channel);
+        return capture.images.at(RoleId::of_layer(layer, role)).at(x, 0, channel);
     };
     EXPECT_EQ(value(0, "color", 0, 3), 0.4f);
     EXPECT_EQ(value(0, "depth", 0, 0), 2);
@@ -84,12 +85,12 @@ TEST(DeepCapture, PutsWhatLiesBehindIntoTheLastLayerThatIsAskedFor) {
     write_deep(
         folder / "a.exr",
         deep_image(1, kChannels, {{{0.1f, 0, 0, 0.5f, 1}, {0, 0.2f, 0, 0.5f, 20}, {0, 0, 0.3f, 1, 30}}}));
-    const Capture capture = read_deep_capture(folder / "a.exr", {layer_role(1, "color")});
-    const Image& back = capture.images.at(layer_role(1, "color"));
+    const Capture capture = read_deep_capture(folder / "a.exr", {RoleId::of_layer(1, "color")});
+    const Image& back = capture.images.at(RoleId::of_layer(1, "color"));
     EXPECT_EQ(back.at(0, 0, 1), 0.2f);
     EXPECT_NEAR(back.at(0, 0, 2), 0.5f * 0.3f, 1e-6);
     EXPECT_EQ(back.at(0, 0, 3), 1);
-    const Capture one = read_deep_capture(folder / "a.exr", {layer_role(1, "color")}, 1);
+    const Capture one = read_deep_capture(folder / "a.exr", {RoleId::of_layer(1, "color")}, 1);
     EXPECT_TRUE(one.images.empty());  // past what the capture has
 }
 
@@ -144,14 +145,15 @@ TEST(DeepCapture, PicksIdsAndVectorsOfWhatShowsMost) {
     ids.uints = {(1u << 30) + 7, 3};
     ids.floats.clear();
     write_deep(folder / "a.exr", image);
-    const Capture capture = read_deep_capture(
-        folder / "a.exr", {"velocity", "object_id", layer_role(0, "velocity"), layer_role(0, "object_id"),
-                           layer_role(0, "depth"), layer_role(1, "object_id")});
+    const Capture capture =
+        read_deep_capture(folder / "a.exr", {"velocity", "object_id", RoleId::of_layer(0, "velocity"),
+                                             RoleId::of_layer(0, "object_id"), RoleId::of_layer(0, "depth"),
+                                             RoleId::of_layer(1, "object_id")});
     EXPECT_EQ(capture.images.at("velocity").at(0, 0, 0), -4);
     EXPECT_EQ(capture.images.at("object_id").uint_at(0, 0, 0), 3u);
-    EXPECT_EQ(capture.images.at(layer_role(0, "velocity")).at(0, 0, 0), 8);
-    EXPECT_EQ(capture.images.at(layer_role(0, "object_id")).uint_at(0, 0, 0), (1u << 30) + 7);
-    EXPECT_EQ(capture.images.at(layer_role(0, "depth")).at(0, 0, 0), 3);  // the middle of a volume
+    EXPECT_EQ(capture.images.at(RoleId::of_layer(0, "velocity")).at(0, 0, 0), 8);
+    EXPECT_EQ(capture.images.at(RoleId::of_layer(0, "object_id")).uint_at(0, 0, 0), (1u << 30) + 7);
+    EXPECT_EQ(capture.images.at(RoleId::of_layer(0, "depth")).at(0, 0, 0), 3);  // the middle of a volume
 }
 
 TEST(DeepCapture, IsPutInOrderByItsDepthInAnySpelling) {
@@ -213,7 +215,7 @@ class DeepFileOfAProducer : public testing::TestWithParam<const char*> {};
 TEST_P(DeepFileOfAProducer, IsFlattenedAsOpenExrsDocumentSays) {
     AFTERSHADE_REQUIRE_CAPTURE(file, GetParam());
     const auto pixels = samples_of(*file, "G");
-    for (const Names& roles : {Names{"color"}, Names{"color", layer_role(3, "color")}}) {
+    for (const Roles& roles : {Roles{"color"}, Roles{"color", RoleId::of_layer(3, "color")}}) {
         const Capture capture = read_deep_capture(*file, roles);
         const auto color = capture.images.at("color").floats();
         ASSERT_EQ(color.size(), 4 * pixels.size());
@@ -243,7 +245,7 @@ TEST_P(DeepFileOfAProducer, IsFlattenedAsOpenImageIoDoesWhereNothingOverlaps) {
             if (pixel[i].front <= std::max(pixel[i - 1].front, pixel[i - 1].back)) overlaps.back() = true;
     }
     EXPECT_LT(std::ranges::count(overlaps, true), std::ptrdiff_t(overlaps.size() / 2));
-    for (const Names& roles : {Names{"color"}, Names{"color", layer_role(3, "color")}}) {
+    for (const Roles& roles : {Roles{"color"}, Roles{"color", RoleId::of_layer(3, "color")}}) {
         const Capture capture = read_deep_capture(*file, roles);
         const auto color = capture.images.at("color").floats();
         ASSERT_EQ(color.size(), expected.size());

@@ -9,7 +9,7 @@ namespace aftershade::test {
 namespace {
 
 using Names = std::vector<std::string>;
-const Names kColorAndDepth = {"color", "depth"};
+const std::vector<RoleId> kColorAndDepth = {"color", "depth"};
 
 class FirstFrame : public testing::Test {
 protected:
@@ -205,8 +205,8 @@ TEST_F(FirstFrame, DecidesForEachLayerOfACapture) {
     plate(2, both);
     sequence_.layers.resize(2);
     sequence_.layers[1].files = FramePattern((folder_ / "b%d.exr").string());
-    const Names back = {"color", layer_role(1, "color")};
-    EXPECT_FLOAT_EQ(reader().read(2, back).images.at(layer_role(1, "color")).at(0, 0, 0), 5);
+    const std::vector<RoleId> back = {"color", RoleId::of_layer(1, "color")};
+    EXPECT_FLOAT_EQ(reader().read(2, back).images.at(RoleId::of_layer(1, "color")).at(0, 0, 0), 5);
     EXPECT_EQ(reader().read_header(2).differences,
               (Names{"layer 2: it has the layers 'Beta' and 'Zeta'; 'Zeta' is read, as in " +
                      (folder_ / "b1.exr").string()}));

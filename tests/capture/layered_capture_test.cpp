@@ -31,19 +31,19 @@ protected:
         EXPECT_EQ(lines_of(diagnostics), Lines{});
         return sequence.value_or(Sequence{});
     }
-    Capture read(const std::string& json, const Names& roles) {
+    Capture read(const std::string& json, const std::vector<RoleId>& roles) {
         sequence_ = sequence(json);
         Diagnostics diagnostics;
         return CaptureReader(sequence_, read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics), {})
             .read(1, roles);
     }
-    static std::vector<float> first_channel(const Capture& capture, const std::string& role) {
+    static std::vector<float> first_channel(const Capture& capture, const RoleId& role) {
         const Image& image = capture.images.at(role);
         std::vector<float> values;
         for (int x = 0; x < image.width(); ++x) values.push_back(image.at(x, 0, 0));
         return values;
     }
-    static float alpha(const Capture& capture, const std::string& role, int x) {
+    static float alpha(const Capture& capture, const RoleId& role, int x) {
         return capture.images.at(role).at(x, 0, 3);
     }
     TemporaryFolder folder_;
@@ -56,19 +56,19 @@ constexpr const char* kPlates =
 TEST_F(LayeredCapture, PutsPlatesOverOneAnother) {
     write_plate("front.exr", {0.25f, 0.5f, 0}, {0.25f, 1, 0}, {2, 2, kInfinity}, {7, 7, 0});
     write_plate("back.exr", {0.5f, 0.125f, 0.75f}, {1, 1, 1}, {9, 8, 7}, {3, 4, 5});
-    const Capture capture =
-        read(kPlates, {"color", "depth", "object_id", layer_role(0, "color"), layer_role(1, "color"),
-                       layer_role(1, "depth"), layer_role(1, "object_id"), layer_role(2, "color")});
+    const Capture capture = read(kPlates, {"color", "depth", "object_id", RoleId::of_layer(0, "color"),
+                                           RoleId::of_layer(1, "color"), RoleId::of_layer(1, "depth"),
+                                           RoleId::of_layer(1, "object_id"), RoleId::of_layer(2, "color")});
     EXPECT_EQ(first_channel(capture, "color"), (std::vector<float>{0.25f + 0.75f * 0.5f, 0.5f, 0.75f}));
     EXPECT_EQ(first_channel(capture, "depth"),
               (std::vector<float>{9, 2, 7}));  // 0.75 of the first shows the back
     EXPECT_EQ(capture.images.at("object_id").uint_at(0, 0, 0), 3u);
     EXPECT_EQ(capture.images.at("object_id").uint_at(1, 0, 0), 7u);
-    EXPECT_EQ(first_channel(capture, layer_role(0, "color")), (std::vector<float>{0.25f, 0.5f, 0}));
-    EXPECT_EQ(alpha(capture, layer_role(0, "color"), 0), 0.25f);
-    EXPECT_EQ(first_channel(capture, layer_role(1, "depth")), (std::vector<float>{9, 8, 7}));
-    EXPECT_EQ(capture.images.at(layer_role(1, "object_id")).uint_at(1, 0, 0), 4u);
-    EXPECT_FALSE(capture.images.contains(layer_role(2, "color")));
+    EXPECT_EQ(first_channel(capture, RoleId::of_layer(0, "color")), (std::vector<float>{0.25f, 0.5f, 0}));
+    EXPECT_EQ(alpha(capture, RoleId::of_layer(0, "color"), 0), 0.25f);
+    EXPECT_EQ(first_channel(capture, RoleId::of_layer(1, "depth")), (std::vector<float>{9, 8, 7}));
+    EXPECT_EQ(capture.images.at(RoleId::of_layer(1, "object_id")).uint_at(1, 0, 0), 4u);
+    EXPECT_FALSE(capture.images.contains(RoleId::of_layer(2, "color")));
     EXPECT_EQ(capture.header.layer_count, 2);
     EXPECT_EQ(capture.header.roles, (Names{"color", "depth", "object_id"}));
 }
@@ -80,10 +80,10 @@ TEST_F(LayeredCapture, PutsWhatLiesBehindIntoTheLastLayerThatIsAskedFor) {
     const Capture capture =
         read(R"({"aftershade": 1, "layers": [{"frames": "front.exr"}, {"frames": "middle.exr"},
                                      {"frames": "back.exr"}]})",
-             {"color", layer_role(1, "color"), layer_role(1, "depth")});
-    EXPECT_EQ(first_channel(capture, layer_role(1, "color")),
+             {"color", RoleId::of_layer(1, "color"), RoleId::of_layer(1, "depth")});
+    EXPECT_EQ(first_channel(capture, RoleId::of_layer(1, "color")),
               (std::vector<float>{0.125f + 0.75f * 0.5f, 0.25f + 0.5f * 0.5f, 0.5f}));
-    EXPECT_EQ(first_channel(capture, layer_role(1, "depth")), (std::vector<float>{9, 4, 9}));
+    EXPECT_EQ(first_channel(capture, RoleId::of_layer(1, "depth")), (std::vector<float>{9, 4, 9}));
     EXPECT_EQ(first_channel(capture, "color")[0], 0.25f + 0.5f * 0.5f);
 }
 
@@ -94,11 +94,11 @@ TEST_F(LayeredCapture, FillsWhatAHoldoutCutOut) {
     write_plate("back.exr", {0.125f, 0, 0.5f}, {0.25f, 0, 1}, {9, 9, 9});
     const Capture capture = read(R"({"aftershade": 1, "layers": [{"frames": "front.exr"},
                                      {"frames": "back.exr", "holdout": true}]})",
-                                 {"color", layer_role(1, "color")});
+                                 {"color", RoleId::of_layer(1, "color")});
     EXPECT_EQ(first_channel(capture, "color"), (std::vector<float>{0.625f, 0.5f, 0.5f}));
-    EXPECT_EQ(first_channel(capture, layer_role(1, "color")), (std::vector<float>{0.5f, 0, 0.5f}));
-    EXPECT_EQ(alpha(capture, layer_role(1, "color"), 0), 1);
-    EXPECT_EQ(alpha(capture, layer_role(1, "color"), 1), 0);
+    EXPECT_EQ(first_channel(capture, RoleId::of_layer(1, "color")), (std::vector<float>{0.5f, 0, 0.5f}));
+    EXPECT_EQ(alpha(capture, RoleId::of_layer(1, "color"), 0), 1);
+    EXPECT_EQ(alpha(capture, RoleId::of_layer(1, "color"), 1), 0);
 }
 
 TEST_F(LayeredCapture, TakesPartsOfOneFile) {
@@ -106,10 +106,10 @@ TEST_F(LayeredCapture, TakesPartsOfOneFile) {
                                     {"behind", "", {"R", "G", "B", "A", "Z"}, kWholePart, 3}});
     const Capture capture = read(
         R"({"aftershade": 1, "frames": "f.exr", "profile": "native", "layers": [{}, {"layer": "behind"}]})",
-        {"color", "depth", layer_role(1, "color"), layer_role(1, "depth")});
+        {"color", "depth", RoleId::of_layer(1, "color"), RoleId::of_layer(1, "depth")});
     EXPECT_EQ(first_channel(capture, "color")[0], 1);
-    EXPECT_EQ(first_channel(capture, layer_role(1, "color"))[0], 3);
-    EXPECT_NEAR(first_channel(capture, layer_role(1, "depth"))[0], 3.4, 1e-6);
+    EXPECT_EQ(first_channel(capture, RoleId::of_layer(1, "color"))[0], 3);
+    EXPECT_NEAR(first_channel(capture, RoleId::of_layer(1, "depth"))[0], 3.4, 1e-6);
 }
 
 TEST_F(LayeredCapture, TakesBlendersViewLayers) {
@@ -117,12 +117,12 @@ TEST_F(LayeredCapture, TakesBlendersViewLayers) {
     fs::create_symlink(fs::canonical(*file), folder_ / "f.exr");
     const Capture capture = read(
         R"({"aftershade": 1, "frames": "f.exr", "layers": [{"layer": "Near objects"}, {"layer": "Far"}]})",
-        {"color", layer_role(0, "color"), layer_role(1, "color"), layer_role(0, "depth"),
-         layer_role(1, "depth")});
+        {"color", RoleId::of_layer(0, "color"), RoleId::of_layer(1, "color"), RoleId::of_layer(0, "depth"),
+         RoleId::of_layer(1, "depth")});
     EXPECT_EQ(capture.header.profile, "blender");
     const auto flat = capture.images.at("color").floats();
-    const auto front = capture.images.at(layer_role(0, "color")).floats();
-    const auto back = capture.images.at(layer_role(1, "color")).floats();
+    const auto front = capture.images.at(RoleId::of_layer(0, "color")).floats();
+    const auto back = capture.images.at(RoleId::of_layer(1, "color")).floats();
     int different = 0;
     for (std::size_t i = 0; i < flat.size(); i += 4) {
         const float alpha = std::clamp(front[i + 3], 0.0f, 1.0f);
@@ -131,8 +131,8 @@ TEST_F(LayeredCapture, TakesBlendersViewLayers) {
         different += front[i] != back[i];
     }
     EXPECT_GT(different, 10'000);
-    EXPECT_FALSE(std::ranges::equal(capture.images.at(layer_role(0, "depth")).floats(),
-                                    capture.images.at(layer_role(1, "depth")).floats()));
+    EXPECT_FALSE(std::ranges::equal(capture.images.at(RoleId::of_layer(0, "depth")).floats(),
+                                    capture.images.at(RoleId::of_layer(1, "depth")).floats()));
 }
 
 TEST_F(LayeredCapture, SaysWhichLayerDoesNotFit) {

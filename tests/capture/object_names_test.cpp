@@ -27,8 +27,8 @@ struct Named {
         EXPECT_EQ(test::lines_of(diagnostics), test::Lines{});
         profiles = read_profiles(AFTERSHADE_SOURCE_DIR "/profiles", diagnostics);
     }
-    Capture read(const std::string& role) const {
-        const std::vector<std::string> roles = {role};
+    Capture read(const RoleId& role) const {
+        const std::vector<RoleId> roles = {role};
         return CaptureReader(sequence, profiles, {}).read(sequence.frames.front(), roles);
     }
     std::vector<std::uint32_t> ids() const {
@@ -66,8 +66,8 @@ TEST(NamesOfNumbers, GiveMasksTheirCoverage) {
     const std::vector<TableKey> objects = {{0, 0, "bar"}, {2, 2, ""}};
     for (const std::vector<std::string>& also_in_parameters : {std::vector<std::string>{}, {"bar"}}) {
         capture.sequence.object_names = also_in_parameters;
-        const Capture read = capture.read(coverage_role(objects));
-        const auto values = read.images.at(coverage_role(objects)).floats();
+        const Capture read = capture.read(RoleId::coverage(objects));
+        const auto values = read.images.at(RoleId::coverage(objects)).floats();
         EXPECT_EQ((std::vector<float>{values.begin(), values.end()}), (std::vector<float>{0, 0, 1, 1}));
     }
 }

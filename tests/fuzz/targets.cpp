@@ -130,8 +130,9 @@ void capture_file(std::string_view bytes) {
     for (const bool with_matte : {false, true}) {
         if (!with_matte) sequence.cryptomatte.reset();
         else sequence.cryptomatte = CryptomatteChoice{"", {"Cube"}};
-        std::vector<std::string> roles = role_names();
-        for (const char* role : {kColorRole, kDepthRole, kObjectIdRole}) roles.push_back(layer_role(2, role));
+        std::vector<RoleId> roles = role_ids(role_names());
+        for (const char* role : {kColorRole, kDepthRole, kObjectIdRole})
+            roles.push_back(RoleId::of_layer(2, role));
         refused_or_read([&] { CaptureReader(sequence, profiles, kSmall).read(1, roles); });
     }
 }

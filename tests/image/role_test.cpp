@@ -60,6 +60,29 @@ TEST(Role, OfAnAovHasItsOwnChannels) {
     EXPECT_EQ(role->native_channels, (std::vector<std::string>{"mist.R", "mist.G", "mist.B", "mist.A"}));
 }
 
+TEST(RoleId, SaysTheLayerInItsName) {
+    const RoleId back("layer12:aov:mist");
+    EXPECT_EQ(back.layer(), 12);
+    EXPECT_EQ(back.of_any_layer(), "aov:mist");
+    EXPECT_EQ(back, RoleId::of_layer(12, "aov:mist"));
+    EXPECT_EQ(find_role(back)->native_channels[0], "layer12.mist.R");
+    for (const char* whole :
+         {"color", "aov:layer1", "layer:color", "layer-1:color", "layer1 :color", "layer1"}) {
+        EXPECT_EQ(RoleId(whole).layer(), -1) << whole;
+        EXPECT_EQ(RoleId(whole).of_any_layer(), whole);
+    }
+    EXPECT_FALSE(find_role("layer1:colour")) << "a layer of no role";
+}
+
+TEST(RoleId, OfACoverageIsMadeOfObjectsAlone) {
+    const std::vector<TableKey> objects = {{3, 7, ""}, {0, 0, "3"}};
+    const RoleId role = RoleId::coverage(objects);
+    EXPECT_EQ(role.objects(), objects);
+    EXPECT_EQ(find_role(role)->kind, RoleKind::coverage);
+    EXPECT_NE(role, RoleId::coverage(std::vector<TableKey>{{3, 7, ""}, {3, 3, ""}})) << "a name is no number";
+    EXPECT_FALSE(find_role(role.name())) << "no document can name it";
+}
+
 TEST(Role, NamesShareNoChannel) {
     std::set<std::string> seen;
     for (const ChannelRole& role : channel_roles())

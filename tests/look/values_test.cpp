@@ -161,11 +161,11 @@ TEST_F(ValueForms, KeysMayComeFromTheCaptureOfEachFrame) {
     const auto roles = bound.pipeline().capture_roles();
     for (const char* object : {"Ball", "Suzanne"}) {
         const std::vector<TableKey> key{{0, 0, object}};
-        EXPECT_TRUE(std::ranges::count(roles, coverage_role(key))) << object;
+        EXPECT_TRUE(std::ranges::count(roles, RoleId::coverage(key))) << object;
     }
     Capture covered = scene(1);
     const std::vector<TableKey> ball{{0, 0, "Ball"}};
-    Image& coverage = covered.images.emplace(coverage_role(ball), Image(20, 10, 1)).first->second;
+    Image& coverage = covered.images.emplace(RoleId::coverage(ball), Image(20, 10, 1)).first->second;
     coverage.at(0, 0, 0) = 0.75f;
     covered.images.at("depth").at(0, 0, 0) = 7;
     coverage.at(1, 0, 0) = 0.25f;

@@ -104,9 +104,9 @@ TEST_F(Compile, ToldOfAFaultyStepDoesNotComplainOfEveryMentionOfIt) {
 TEST_F(Compile, ListsTheRolesThatTheCaptureMustBring) {
     EXPECT_EQ(
         Bound(effects_, look_of(R"({ "effect": "tint" }, { "effect": "fog" })")).pipeline().capture_roles(),
-        (std::vector<std::string>{"color", "depth"}));
+        (std::vector<RoleId>{"color", "depth"}));
     EXPECT_EQ(Bound(effects_, look_of(R"({ "effect": "tint" })")).pipeline().capture_roles(),
-              std::vector<std::string>{"color"});
+              std::vector<RoleId>{"color"});
 }
 
 TEST_F(Compile, RefusesATapOfAnInputOrOfNothing) {

@@ -46,8 +46,8 @@ protected:
                 for (int c = 0; c < 4; ++c) color.at(x, y, c) = c == 3 ? 1 : 0.125f;
                 depth.at(x, y, 0) = 9;
             }
-        capture.images[layer_role(1, "color")] = std::move(color);
-        capture.images[layer_role(1, "depth")] = std::move(depth);
+        capture.images[RoleId::of_layer(1, "color")] = std::move(color);
+        capture.images[RoleId::of_layer(1, "depth")] = std::move(depth);
         return capture;
     }
     Image shown(const std::string& steps, const Capture& capture) {
@@ -99,7 +99,7 @@ TEST_F(PipelineLayers, DoNotStandForThePictureThatAMixLetsThrough) {
 TEST_F(PipelineLayers, AreAskedOfTheCapture) {
     const Bound bound(effects_, look_of(R"({ "effect": "reveal" })"));
     EXPECT_EQ(bound.pipeline().capture_roles(),
-              (std::vector<std::string>{"color", layer_role(1, "color"), layer_role(1, "depth")}));
+              (std::vector<RoleId>{"color", RoleId::of_layer(1, "color"), RoleId::of_layer(1, "depth")}));
 }
 
 TEST_F(PipelineLayers, MayBeAbsentSoTheirInputsAreOptional) {

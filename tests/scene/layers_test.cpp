@@ -91,7 +91,7 @@ protected:
         Diagnostics diagnostics;
         return read_profiles(std::filesystem::path(AFTERSHADE_SOURCE_DIR) / "profiles", diagnostics);
     }
-    Capture rendered(Job job, const std::vector<std::string>& roles) {
+    Capture rendered(Job job, const std::vector<RoleId>& roles) {
         const Scene scene = ball_before_wall();
         job.folder = folder_.path();
         job.frames = {1};
@@ -113,21 +113,22 @@ protected:
 TEST_F(SceneLayerFiles, AreACaptureWithLayers) {
     Job job;
     job.layers = 2;
-    const Capture capture =
-        rendered(job, {"color", layer_role(1, "color"), layer_role(1, "depth"), layer_role(1, "velocity")});
+    const Capture capture = rendered(job, {"color", RoleId::of_layer(1, "color"),
+                                           RoleId::of_layer(1, "depth"), RoleId::of_layer(1, "velocity")});
     EXPECT_EQ(capture.header.layer_count, 2);
     EXPECT_EQ(capture.images.at("color").at(100, 50, 0), 0.25f);
-    EXPECT_EQ(capture.images.at(layer_role(1, "color")).at(100, 50, 0), 2);
-    EXPECT_EQ(capture.images.at(layer_role(1, "depth")).at(100, 50, 0), 15);
-    EXPECT_EQ(capture.images.at(layer_role(1, "velocity")).at(100, 50, 0), 0);
+    EXPECT_EQ(capture.images.at(RoleId::of_layer(1, "color")).at(100, 50, 0), 2);
+    EXPECT_EQ(capture.images.at(RoleId::of_layer(1, "depth")).at(100, 50, 0), 15);
+    EXPECT_EQ(capture.images.at(RoleId::of_layer(1, "velocity")).at(100, 50, 0), 0);
 }
 
 /// The flat picture is the mean of the rays where one thing alone covers part of a pixel.
 TEST_F(SceneLayerFiles, OfDeepSamplesHoldTheShareOfEachSurface) {
     Job job;
     job.deep = true;
-    const Capture capture = rendered(job, {"color", "depth", layer_role(0, "color"), layer_role(1, "color"),
-                                           layer_role(1, "depth"), layer_role(0, "object_id")});
+    const Capture capture =
+        rendered(job, {"color", "depth", RoleId::of_layer(0, "color"), RoleId::of_layer(1, "color"),
+                       RoleId::of_layer(1, "depth"), RoleId::of_layer(0, "object_id")});
     int edges = 0;
     for (int y = 35; y < 65; ++y)
         for (int x = 75; x < 100; ++x) {  // where the ball's edge is before the wall, and no card
@@ -138,10 +139,11 @@ TEST_F(SceneLayerFiles, OfDeepSamplesHoldTheShareOfEachSurface) {
             ASSERT_NEAR(capture.images.at("color").at(x, y, 0), share * 0.25 + (1 - share) * 2, 1e-5);
             if (on_ball == 0) continue;
             edges += on_ball < 16;
-            ASSERT_NEAR(capture.images.at(layer_role(0, "color")).at(x, y, 3), share, 1e-6) << x << " " << y;
-            ASSERT_NEAR(capture.images.at(layer_role(1, "color")).at(x, y, 0), 2, 1e-5);
-            ASSERT_FLOAT_EQ(capture.images.at(layer_role(1, "depth")).at(x, y, 0), 15);
-            ASSERT_EQ(capture.images.at(layer_role(0, "object_id")).uint_at(x, y, 0), 4u);
+            ASSERT_NEAR(capture.images.at(RoleId::of_layer(0, "color")).at(x, y, 3), share, 1e-6)
+                << x << " " << y;
+            ASSERT_NEAR(capture.images.at(RoleId::of_layer(1, "color")).at(x, y, 0), 2, 1e-5);
+            ASSERT_FLOAT_EQ(capture.images.at(RoleId::of_layer(1, "depth")).at(x, y, 0), 15);
+            ASSERT_EQ(capture.images.at(RoleId::of_layer(0, "object_id")).uint_at(x, y, 0), 4u);
         }
     EXPECT_GT(edges, 20);
     ASSERT_TRUE(capture.deep);

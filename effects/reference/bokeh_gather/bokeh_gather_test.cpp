@@ -165,10 +165,10 @@ TEST(BokehGather, DissolvesAWireBeforeWhatTheSecondLayerHas) {
         for (int x = 30; x < 64; ++x) {
             if (!outside(x)) continue;
             capture.images["depth"].at(x, y, 0) = kApertureFocusM;
-            capture.images[layer_role(1, "depth")].at(x, y, 0) = std::numeric_limits<float>::infinity();
+            capture.images[RoleId::of_layer(1, "depth")].at(x, y, 0) = std::numeric_limits<float>::infinity();
             for (int c = 0; c < 4; ++c) {
                 capture.images["color"].at(x, y, c) = c == 3 ? 1 : kApertureDark;
-                capture.images[layer_role(1, "color")].at(x, y, c) = 0;
+                capture.images[RoleId::of_layer(1, "color")].at(x, y, c) = 0;
             }
         }
     const Image out = blur(capture, 12, R"("blades": 4, "taps": 1024)");

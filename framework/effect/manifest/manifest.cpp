@@ -25,7 +25,7 @@ std::vector<std::string> PassSpec::shader_files() const {
 }
 
 std::string InputSpec::image_role() const {
-    return layer < 0 ? role : layer_role(layer, role);
+    return layer < 0 ? role : RoleId::of_layer(layer, role).name();
 }
 
 const std::string* EffectManifest::find_generated(const std::filesystem::path& file) const {
