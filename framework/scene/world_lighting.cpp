@@ -248,9 +248,10 @@ bool World::light_meets(const Surface& surface, const Bvh& boxes) const {
 
 World::Finished World::finished(const Surface& surface, const dvec3& eye) const {
     const Material& material = material_at(surface);
-    const glm::dmat2 footprint = material.maps.any() ? uv_of_pixel(surface, eye) : glm::dmat2(0);
-    Finished result{surface, finish_at(material, surface.uv, footprint)};
-    if (material.maps.normal) result.surface.normal = mapped_normal(surface, material.maps, footprint);
+    TexturePoint at = texture_point(surface);
+    if (material.maps.any()) at.weights_of_pixel = weights_of_pixel(surface, eye);
+    Finished result{surface, finish_at(material, at)};
+    if (material.maps.normal) result.surface.normal = mapped_normal(surface, material.maps, at);
     return result;
 }
 

@@ -9,8 +9,8 @@
 #include "framework/scene/triangulate.h"
 #include "framework/scene/visibility.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/scene/alpha_file.h"
 #include "tests/scene/scene_text.h"
-#include "tests/scene/textured_file.h"
 
 namespace aftershade::visibility {
 namespace {
@@ -91,6 +91,14 @@ TEST_P(LightOn, WrapsTexturesAndScalesMapsAsTheCpuDoes) {
                        .text());
         const scene::Scene quad = quad_scene(folder.path(), 64, light);
         EXPECT_LT(other_pixels(pictures(context(), quad, 1, 1, kMaxBufferBytes, {64, 64})), 0.01) << sampler;
+    }
+}
+
+TEST_P(LightOn, ShinesThroughAlphaAndByFurtherTextureCoordinatesAsTheCpus) {
+    for (const std::string& mode : {scene::test::kBlend, scene::test::kMask}) {
+        const scene::test::TemporaryFolder folder;
+        const scene::Scene scene = scene::test::alpha_scene(folder.path(), mode);
+        EXPECT_LT(other_pixels(pictures(context(), scene, 1, 1)), 0.005) << mode;
     }
 }
 
