@@ -1,9 +1,11 @@
 #include "framework/visibility/gpu_scene.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <bit>
 
 #include "framework/base/error.h"
+#include "framework/base/option.h"
 #include "framework/scene/mesh.h"
 
 namespace aftershade::visibility {
@@ -16,6 +18,7 @@ using scene::Bounds;
 namespace {
 
 constexpr std::size_t kMaxTriangles = std::size_t(1) << 20;
+constexpr double kMaxLength_m = 1e9;  // whose fourth power single precision still holds
 
 float bits(std::uint32_t value) {
     return std::bit_cast<float>(value);
@@ -60,9 +63,20 @@ void check_triangle_count(const scene::Scene& scene) {
     for (const scene::Object& object : scene.objects)
         if (object.shape.mesh >= 0) count += scene.meshes[std::size_t(object.shape.mesh)].triangles.size();
     if (count <= kMaxTriangles) return;
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: {} triangles, the limit of visibility by GL is {}; choose {}", scene.path.string(),
+                    count, kMaxTriangles, spelled(Option::visibility_on, "cpu")));
+}
+
+void check_size(const scene::Scene& scene, std::size_t object, const Bounds& bounds) {
+    const dvec3 far = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+    if (bounds.empty() || glm::all(glm::lessThanEqual(far, dvec3(kMaxLength_m)))) return;
+    const double worst_m = std::max({far.x, far.y, far.z});
     throw Error(ErrorKind::usage,
-                fmt::format("{}: {} triangles, the limit of visibility by GL is {}; trace them on the CPU",
-                            scene.path.string(), count, kMaxTriangles));
+                fmt::format("{}: object '{}' reaches {} m, the limit of visibility by GL is {}; choose {}",
+                            scene.path.string(), scene.objects[object].name, worst_m, kMaxLength_m,
+                            spelled(Option::visibility_on, "cpu")));
 }
 
 GpuGrid gpu_grid(const scene::TriangleGrid& grid, const glm::dmat4& view_from_object, const scene::Mesh& mesh,
@@ -111,6 +125,7 @@ GpuScene make_gpu_scene(const scene::SceneRenderer& renderer) {
         const scene::Object& from = scene.objects[i];
         GpuObject& object = result.objects.emplace_back();
         if (from.shape.mesh < 0) continue;
+        check_size(scene, i, scene::bounds_of(from.shape, renderer.geometry().mesh_of(from.shape)));
         object = of_mesh[std::size_t(from.shape.mesh)];
         object.first_surface = surfaces;
         object.opacity = float(scene.material_of(int(i)).opacity);
@@ -134,6 +149,7 @@ std::vector<GpuNode> make_top(const scene::SceneRenderer& renderer,
         Bounds all;
         for (const scene::World& world : moments)
             all.add(scene::transformed(own, world.state().world_from_object[i]));
+        check_size(scene, i, all);
         bounds.push_back(with_room(all));
         objects.push_back(std::uint32_t(i));
     }

@@ -48,10 +48,12 @@ struct GpuScene {
 /// Each triangle of each object: the object, and its number there.
 std::vector<std::array<std::uint32_t, 2>> gpu_sources(const scene::Scene& scene);
 
-/// Throws Error(ErrorKind::usage) for more than 2^20 triangles of all objects.
+/// Throws Error(ErrorKind::usage) for more than 2^20 triangles of all objects, and for meshes that reach
+/// further than 1e9 m.
 GpuScene make_gpu_scene(const scene::SceneRenderer& renderer);
 
-/// The hierarchy over the objects as they stand at these moments. A leaf's item is an object.
+/// The hierarchy over the objects as they stand at these moments. A leaf's item is an object. Throws
+/// Error(ErrorKind::usage) for objects that reach further than 1e9 m.
 std::vector<GpuNode> make_top(const scene::SceneRenderer& renderer, const std::vector<scene::World>& moments);
 
 /// In the order of gpu_sources().

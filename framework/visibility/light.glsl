@@ -174,7 +174,7 @@ float visible_ambient(Point point, uint rays) {
 
 // Light from `count` lights, beginning with `first`, and from the ambient light, whose rays are ambient.w.
 vec3 light_at(Point point, vec3 eye, vec4 ambient, uint first, uint count) {
-    vec3 to_eye = normalize(eye - point.position);
+    vec3 way = eye - point.position, to_eye = way == vec3(0.0) ? point.normal : normalize(way);  // as direction_to() of the CPU
     vec3 irradiance = point.finish.ambient * ambient.rgb, reflected = vec3(0.0);
     if (ambient.w > 0.0 && ambient.rgb != vec3(0.0)) irradiance *= visible_ambient(point, uint(ambient.w));
     for (uint i = first; i < first + count; ++i) add_light(light_number(i), point, to_eye, irradiance, reflected);

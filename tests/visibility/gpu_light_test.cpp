@@ -115,6 +115,23 @@ TEST_P(LightOn, RefusesTexturesThatNoBufferHolds) {
     }
 }
 
+TEST_P(LightOn, RefusesObjectsWhoseSizeSinglePrecisionDoesNotHold) {
+    const scene::Scene scene =
+        scene::scene_of(R"({ "aftershade": 1, "camera": {}, "materials": { "grey": {} },
+        "objects": [ { "name": "sky", "shape": "sphere", "radius": 1e6, "scale": 1e5, "material": "grey" } ] })");
+    try {
+        pictures(context(), scene, 1, 1, kMaxBufferBytes, {4, 4});
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        const std::string text = error.what();
+        EXPECT_NE(text.find("object 'sky' reaches 100000"), std::string::npos) << text;
+        EXPECT_NE(text.find("m, the limit of visibility by GL is 1000000000; choose visibility_on cpu"),
+                  std::string::npos)
+            << text;
+    }
+}
+
 /// A floor, a stretched box, a ball and a pane, under one light.
 scene::Scene room_under(const std::string& light) {
     return scene::scene_of(R"({ "aftershade": 1, "frames": "1", "size": [160, 90],
