@@ -105,7 +105,7 @@ DeepImage SceneRenderer::render_deep(int frame, double time, std::array<double, 
             std::map<int, int> met;
             for (const Surface& surface : world.trace_through(ray, kMostSurfaces)) {
                 const Motion motion = motion_of(states, &surface, ray.direction);
-                const double opacity = world.opacity_of(surface);
+                const double opacity = world.opacity_of(surface, ray.origin);
                 const Shading shading = world.shade(surface, ray.origin);
                 hits.push_back({surface.object, met[surface.object]++, surface.t, surface.t,
                                 opacity * shading.color(), opacity, shading.normal,

@@ -24,7 +24,17 @@ bool file_exists(const std::string& path, void*) {
     return fs::is_regular_file(path, ignored);
 }
 
-std::string same_path(const std::string& path, void*) {
+/// tinygltf 2.7 takes a plus sign for a blank, which URIs of files do not mean (RFC 3986).
+std::string with_plus_signs(const std::string& path, void*) {
+    if (file_exists(path, nullptr) || path.find(' ') == path.npos) return path;
+    const fs::path wanted(path);
+    std::error_code fault;
+    for (fs::directory_iterator at(wanted.parent_path(), fault), end; !fault && at != end;
+         at.increment(fault)) {
+        std::string name = at->path().filename().string();
+        std::replace(name.begin(), name.end(), '+', ' ');
+        if (name == wanted.filename().string()) return at->path().string();
+    }
     return path;
 }
 
@@ -56,7 +66,7 @@ template <typename Callbacks>
 Callbacks callbacks_in(std::string& folder) {
     Callbacks callbacks{};
     callbacks.FileExists = file_exists;
-    callbacks.ExpandFilePath = same_path;
+    callbacks.ExpandFilePath = with_plus_signs;
     callbacks.ReadWholeFile = read_whole_file;
     callbacks.WriteWholeFile = refuse_to_write;
     if constexpr (requires { callbacks.GetFileSizeInBytes; }) callbacks.GetFileSizeInBytes = file_size;
@@ -156,7 +166,8 @@ std::string gltf_file_fault(const fs::path& path, const std::string& uri) {
     const std::string file = folder + "/" + without_percents(uri);
     const bool read = read_whole_file(&unused, &fault, file, &folder);
     const std::string remedy = R"( (put it there, or give the object a "material" of the scene))";
-    if (read) return file + " is empty" + remedy;
+    if (read && unused.empty()) return file + " is empty" + remedy;
+    if (read) return file + " is there, but the URI is not escaped; write % as %25";
     return file_exists(file, nullptr) ? fault : fault + remedy;
 }
 

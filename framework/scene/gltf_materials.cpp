@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMaxScale = 1000;  // of a normal map
+constexpr double kMaxTransform = 1e6;
 constexpr std::size_t kMaxTexels = std::size_t(1) << 27;
 
 TextureWrap wrap_of(int mode) {
@@ -29,13 +30,13 @@ TextureWrap wrap_of(int mode) {
 
 class MaterialReader {
 public:
-    MaterialReader(const fs::path& path, const tinygltf::Model& model, std::vector<std::string>& warnings)
-        : path_(path), model_(model), warnings_(warnings) {}
+    MaterialReader(const fs::path& path, const tinygltf::Model& model) : path_(path), model_(model) {}
 
     Material read(std::size_t index) {
         const tinygltf::Material& source = model_.materials[index];
         const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
         place_ = fmt::format("material {}{}", index, source.name.empty() ? "" : " '" + source.name + "'");
+        channels_.clear();
         Material material;
         material.name = source.name;
         material.albedo = material.albedo_2 = color("baseColorFactor", pbr.baseColorFactor, 4);
@@ -54,14 +55,31 @@ public:
         if (!(std::abs(maps.normal_scale) <= kMaxScale))
             fault(fmt::format("normalTexture.scale is {}, not -{} to {}", maps.normal_scale, kMaxScale,
                               kMaxScale));
-        if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE")
-            warn("alphaMode " + source.alphaMode + " is not drawn: the surface is opaque");
+        read_alpha(source, material);
         return material;
     }
+    /// Of the material that was read last, from channel 1 on.
+    const std::vector<UvChannel>& channels() const { return channels_; }
 
 private:
     [[noreturn]] void fault(const std::string& text) const { fail_gltf(path_, place_ + ": " + text); }
-    void warn(const std::string& text) { warnings_.push_back(path_.string() + ": " + place_ + ": " + text); }
+
+    /// glTF 2.0, 3.9.4.
+    void read_alpha(const tinygltf::Material& source, Material& material) const {
+        const double factor =
+            share("the alpha of baseColorFactor", source.pbrMetallicRoughness.baseColorFactor[3]);
+        if (source.alphaMode == "BLEND") {
+            material.opacity = factor;
+            material.blends = bool(material.maps.base_color);
+        } else if (source.alphaMode == "MASK") {
+            if (!(source.alphaCutoff >= 0 && std::isfinite(source.alphaCutoff)))
+                fault(fmt::format("alphaCutoff is {}, not 0 or more", source.alphaCutoff));
+            // A little less, so that single and double precision choose alike where alpha is the cutoff.
+            if (source.alphaCutoff > 0) material.alpha_cutoff = source.alphaCutoff / factor * (1 - 1e-6);
+        } else if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE") {
+            fault("alphaMode is '" + source.alphaMode + "', not OPAQUE, MASK or BLEND");
+        }
+    }
 
     double share(const char* key, double value) const {
         if (!(value >= 0 && value <= 1)) fault(fmt::format("{} is {}, not 0 to 1", key, value));
@@ -77,14 +95,7 @@ private:
 
     template <class Info>
     MaterialMaps::Map map(const std::string& key, const Info& info, TexelValues values) {
-        if (info.index == -1) return nullptr;
-        if (info.texCoord != 0) {
-            warn(fmt::format("{} has texture coordinates set {} and is not drawn; put it on set 0", key,
-                             info.texCoord));
-            return nullptr;
-        }
-        if (info.extensions.contains("KHR_texture_transform"))
-            warn(key + ": KHR_texture_transform is not applied; bake it into the texture coordinates");
+        if (info.index == -1) return {};
         if (info.index < 0 || std::size_t(info.index) >= model_.textures.size())
             fault(fmt::format("{} is texture {}, the file has {}", key, info.index, model_.textures.size()));
         const tinygltf::Texture& texture = model_.textures[std::size_t(info.index)];
@@ -93,7 +104,47 @@ private:
         if (texture.source < 0 || std::size_t(texture.source) >= model_.images.size())
             fault(fmt::format("{} is of image {}, the file has {}", place, texture.source,
                               model_.images.size()));
-        return decoded(texture.source, values, sampling_of(place, texture.sampler));
+        UvChannel channel{info.texCoord};
+        if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end())
+            channel = transformed(key, channel, found->second);
+        if (channel.set < 0) fault(fmt::format("{} has texture coordinates set {}", key, channel.set));
+        return {decoded(texture.source, values, sampling_of(place, texture.sampler)), number_of(channel)};
+    }
+
+    int number_of(const UvChannel& channel) {
+        if (channel == UvChannel()) return 0;
+        const auto found = std::find(channels_.begin(), channels_.end(), channel);
+        const int number = int(found - channels_.begin()) + 1;
+        if (found == channels_.end()) channels_.push_back(channel);
+        return number;
+    }
+
+    double number_in(const std::string& key, const tinygltf::Value& value) const {
+        const double number = value.IsNumber() ? value.GetNumberAsDouble() : kMaxTransform * 2;
+        if (!(std::abs(number) <= kMaxTransform))
+            fault(fmt::format("{} is not a number from -{} to {}", key, kMaxTransform, kMaxTransform));
+        return number;
+    }
+
+    glm::dvec2 pair_in(const std::string& key, const tinygltf::Value& value) const {
+        if (!value.IsArray() || value.ArrayLen() != 2) fault(key + " is not two numbers");
+        return {number_in(key, value.Get(0)), number_in(key, value.Get(1))};
+    }
+
+    /// Scale, then a turn from +u to -v, which is anticlockwise as the picture lies, then the offset.
+    UvChannel transformed(const std::string& key, UvChannel channel, const tinygltf::Value& extension) const {
+        const std::string place = key + ".KHR_texture_transform.";
+        const glm::dvec2 scale =
+            extension.Has("scale") ? pair_in(place + "scale", extension.Get("scale")) : glm::dvec2(1);
+        const glm::dvec2 offset =
+            extension.Has("offset") ? pair_in(place + "offset", extension.Get("offset")) : glm::dvec2(0);
+        const double angle_rad =
+            extension.Has("rotation") ? number_in(place + "rotation", extension.Get("rotation")) : 0;
+        if (extension.Has("texCoord"))
+            channel.set = int(number_in(place + "texCoord", extension.Get("texCoord")));
+        const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+        channel.from_set = glm::dmat3x2(scale.x * glm::dvec2(c, -s), scale.y * glm::dvec2(s, c), offset);
+        return channel;
     }
 
     TextureSampling sampling_of(const std::string& place, int index) const {
@@ -105,8 +156,9 @@ private:
                 sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST};
     }
 
-    MaterialMaps::Map decoded(int image, TexelValues values, const TextureSampling& sampling) {
-        MaterialMaps::Map& made = made_[{image, values, sampling.wrap_u, sampling.wrap_v, sampling.nearest}];
+    std::shared_ptr<const SurfaceTexture> decoded(int image, TexelValues values,
+                                                  const TextureSampling& sampling) {
+        auto& made = made_[{image, values, sampling.wrap_u, sampling.wrap_v, sampling.nearest}];
         if (!made) {
             const Image& stored = stored_image(image);
             texels_ += std::size_t(stored.width()) * std::size_t(stored.height());
@@ -163,28 +215,29 @@ private:
 
     const fs::path& path_;
     const tinygltf::Model& model_;
-    std::vector<std::string>& warnings_;
     std::string place_;
+    std::vector<UvChannel> channels_;
     int last_index_ = -1;
     Image last_image_;  // one alone: as floats it has up to 16 bytes a texel
-    std::map<Key, MaterialMaps::Map> made_;
+    std::map<Key, std::shared_ptr<const SurfaceTexture>> made_;
     std::size_t texels_ = 0;
 };
 
 }  // namespace
 
-std::vector<Material> gltf_materials(const fs::path& path, const tinygltf::Model& model,
-                                     std::vector<std::string>& warnings) {
-    MaterialReader reader(path, model, warnings);
-    std::vector<Material> materials;
+GltfMaterials gltf_materials(const fs::path& path, const tinygltf::Model& model) {
+    MaterialReader reader(path, model);
+    GltfMaterials result;
     std::vector<bool> is_used(model.materials.size());
     for (const tinygltf::Mesh& mesh : model.meshes)
         for (const tinygltf::Primitive& primitive : mesh.primitives)
             if (primitive.material >= 0 && std::size_t(primitive.material) < is_used.size())
                 is_used[std::size_t(primitive.material)] = true;
-    for (std::size_t i = 0; i < model.materials.size(); ++i)
-        materials.push_back(is_used[i] ? reader.read(i) : Material());
-    return materials;
+    for (std::size_t i = 0; i < model.materials.size(); ++i) {
+        result.materials.push_back(is_used[i] ? reader.read(i) : Material());
+        result.channels.push_back(is_used[i] ? reader.channels() : std::vector<UvChannel>());
+    }
+    return result;
 }
 
 }  // namespace aftershade::scene

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,20 @@
 
 namespace aftershade::scene {
 
+/// Texture coordinates as a texture needs them: those of a set of the file, and KHR_texture_transform.
+struct UvChannel {
+    int set = 0;
+    glm::dmat3x2 from_set{1, 0, 0, 1, 0, 0};
+    bool operator==(const UvChannel&) const = default;
+};
+
+struct GltfMaterials {
+    std::vector<Material> materials;
+    std::vector<std::vector<UvChannel>> channels;  ///< of each material, from channel 1 on
+};
+
 /// Materials of a model that was loaded with its images; those that no triangle has stay unread. Throws as
 /// read_gltf_model() does.
-std::vector<Material> gltf_materials(const std::filesystem::path& path, const tinygltf::Model& model,
-                                     std::vector<std::string>& warnings);
+GltfMaterials gltf_materials(const std::filesystem::path& path, const tinygltf::Model& model);
 
 }  // namespace aftershade::scene

@@ -20,42 +20,12 @@
 
 namespace aftershade::scene {
 
-/// One accessor whose bytes are known to lie in their buffer.
+/// One accessor whose bytes are known to lie in their buffers.
 class GltfValues {
 public:
     GltfValues(const std::filesystem::path& path, const tinygltf::Model& model, int index, std::string what,
-               std::initializer_list<int> types)
-        : path_(path), what_(std::move(what)) {
-        const auto& accessor = element(model.accessors, index, "accessor");
-        if (std::find(types.begin(), types.end(), accessor.type) == types.end())
-            fault(fmt::format("accessor {} has the wrong type for it", index));
-        if (accessor.sparse.isSparse)
-            fault(fmt::format("accessor {} is sparse, which is not read: export without it", index));
-        const auto& view = element(model.bufferViews, accessor.bufferView, "bufferView");
-        const auto& buffer = element(model.buffers, view.buffer, "buffer");
-        component_ = accessor.componentType;
-        normalized_ = accessor.normalized;
-        count_ = accessor.count;
-        const int component_bytes = tinygltf::GetComponentSizeInBytes(std::uint32_t(component_));
-        const int components = tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type));
-        const int stride = accessor.ByteStride(view);
-        if (component_bytes <= 0 || components <= 0 || stride < component_bytes * components)
-            fault(fmt::format("accessor {} has a component type or a stride that cannot be", index));
-        stride_ = std::size_t(stride);
-        const std::size_t value_bytes = std::size_t(component_bytes * components);
-        if (view.byteOffset > buffer.data.size() || view.byteLength > buffer.data.size() - view.byteOffset)
-            fault(fmt::format("bufferView {} ends outside its buffer of {} bytes", accessor.bufferView,
-                              buffer.data.size()));
-        const std::size_t limit = view.byteLength;
-        const bool fits =
-            count_ == 0 || (accessor.byteOffset <= limit && limit - accessor.byteOffset >= value_bytes &&
-                            (limit - accessor.byteOffset - value_bytes) / stride_ >= count_ - 1);
-        if (!fits)
-            fault(fmt::format("the {} values of accessor {} end outside its bufferView of {} bytes", count_,
-                              index, limit));
-        bytes_ = std::span(buffer.data).subspan(view.byteOffset, limit);
-        bytes_ = bytes_.subspan(std::min(accessor.byteOffset, limit));
-    }
+               std::initializer_list<int> types);
+    GltfValues(GltfValues&&) = default;
 
     std::size_t count() const { return count_; }
 
@@ -93,12 +63,16 @@ public:
 private:
     [[noreturn]] void fault(const std::string& text) const { fail_gltf(path_, what_ + ": " + text); }
 
-    template <class T>
-    const T& element(const std::vector<T>& all, int index, const char* kind) const {
-        if (index < 0 || std::size_t(index) >= all.size())
-            fault(fmt::format("{} {} is not there, the file has {}", kind, index, all.size()));
-        return all[std::size_t(index)];
-    }
+    struct Layout {
+        std::string name;
+        int view = -1;
+        std::size_t offset = 0;
+        std::size_t count = 0;
+        std::size_t bytes = 0;   ///< of a value
+        std::size_t stride = 0;  ///< 0: as the bufferView has it, or side by side
+    };
+    std::span<const unsigned char> range(const tinygltf::Model& model, Layout& layout) const;
+    void replace_some(const tinygltf::Model& model, const tinygltf::Accessor& accessor, const Layout& all);
 
     template <class T>
     T read(std::size_t i, int component) const {
@@ -116,6 +90,7 @@ private:
 
     const std::filesystem::path& path_;
     std::string what_;
+    std::vector<unsigned char> own_;  ///< of accessors that no bufferView has as they are
     std::span<const unsigned char> bytes_;
     std::size_t stride_ = 0;
     std::size_t count_ = 0;

@@ -30,9 +30,14 @@ std::span<double> KeptShadings::seen_of(std::size_t sample) {
     return std::span(seen_).subspan(sample * lights_, lights_);
 }
 
-std::uint64_t KeptShadings::bytes() const {
+std::uint64_t KeptShadings::bytes_of_sample(std::size_t lights) {
     const std::uint64_t of_index = sizeof(std::uint64_t) + sizeof(std::uint32_t);
-    return samples_.size() * (sizeof(Sample) + lights_ * sizeof(double) + of_index);
+    return sizeof(Sample) + lights * sizeof(double) + of_index;
+}
+
+double KeptShadings::samples_of_pixel(int samples, double shading_rate) {
+    const double cells = shading_rate * kFiner * shading_rate * kFiner;
+    return std::min(double(samples), 4 * cells);
 }
 
 ShadingGrids KeptShadings::next_frame(const SceneRenderer& renderer, int frame,

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "framework/scattering/scattering_profile.h"
+#include "framework/scene/mesh.h"
 #include "framework/scene/surface_texture.h"
 
 namespace aftershade::scene {
@@ -18,10 +19,17 @@ struct Scattering {
     ScatteringProfile profile = {};
 };
 
-/// Textures as glTF 2.0 has them (3.9); null: none.
+/// A texture, by the texture coordinates of a channel of its mesh; null: none.
+struct MaterialMap {
+    std::shared_ptr<const SurfaceTexture> texture;
+    int channel = 0;
+    explicit operator bool() const { return texture != nullptr; }
+};
+
+/// Textures as glTF 2.0 has them (3.9).
 struct MaterialMaps {
-    using Map = std::shared_ptr<const SurfaceTexture>;
-    Map base_color;           ///< times the albedo
+    using Map = MaterialMap;
+    Map base_color;           ///< times the albedo; its alpha: as Material says
     Map emission;             ///< times the emission
     Map metallic_roughness;   ///< green times the roughness, blue times metallic
     Map occlusion;            ///< red: the share of the ambient light that comes here
@@ -29,7 +37,11 @@ struct MaterialMaps {
     double normal_scale = 1;  ///< of the normal's x and y
     double occlusion_strength = 1;
 
-    bool any() const { return base_color || emission || metallic_roughness || occlusion || normal; }
+    bool any() const {
+        for (const Map* map : {&base_color, &emission, &metallic_roughness, &occlusion, &normal})
+            if (*map) return true;
+        return false;
+    }
 };
 
 struct Material {
@@ -42,8 +54,24 @@ struct Material {
     double metallic = 0;          ///< share of the albedo that reflects as a mirror does instead
     glm::dvec3 emission{0};       ///< radiance
     double opacity = 1;           ///< share of the light that the surface stops; the rest continues unbent
+    bool blends = false;          ///< the opacity is multiplied by the base colour's alpha
+    double alpha_cutoff = 0;  ///< where the base colour's alpha, 1 without a map, is below, there is a hole
     std::optional<Scattering> scattering;
     MaterialMaps maps;
+
+    bool is_transparent() const { return opacity < 1 || blends; }
+};
+
+/// A point of a surface, for its textures.
+struct TexturePoint {
+    glm::dvec2 uv{0};            ///< channel 0
+    const Mesh* mesh = nullptr;  ///< null: a shape, which has no other channel and no textures
+    std::uint32_t triangle = 0;
+    glm::dvec2 barycentric{0};       ///< weights of the second and third corner
+    glm::dmat2 weights_of_pixel{0};  ///< a pixel's two sides, in these weights; 0: textures are not filtered
+
+    /// RGB and alpha; 1 without a map.
+    glm::dvec4 of(const MaterialMap& map) const;
 };
 
 /// A material at one point.
@@ -58,9 +86,11 @@ struct Finish {
 /// A smoother surface has a highlight that no pixel's ray meets.
 inline constexpr double kLeastRoughness = 0.03;
 
-/// `uv_of_pixel` as SurfaceTexture::at() has it.
-Finish finish_at(const Material& material, const glm::dvec2& uv, const glm::dmat2& uv_of_pixel);
+Finish finish_at(const Material& material, const TexturePoint& at);
 /// The albedo alone.
-glm::dvec3 albedo_at(const Material& material, const glm::dvec2& uv, const glm::dmat2& uv_of_pixel);
+glm::dvec3 albedo_at(const Material& material, const TexturePoint& at);
+double opacity_at(const Material& material, const TexturePoint& at);
+/// Whether the surface has a hole there. That of a point alone, so that its edge is sharp from everywhere.
+bool is_hole(const Material& material, TexturePoint at);
 
 }  // namespace aftershade::scene

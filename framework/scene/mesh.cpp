@@ -8,6 +8,12 @@ Bounds Mesh::bounds() const {
     return bounds;
 }
 
+std::uint32_t Mesh::copy_vertex(std::uint32_t vertex) {
+    vertices.push_back(Vertex(vertices[vertex]));
+    for (std::vector<glm::dvec2>& uvs : more_uvs) uvs.push_back(glm::dvec2(uvs[vertex]));
+    return std::uint32_t(vertices.size() - 1);
+}
+
 Bounds transformed(const Bounds& bounds, const glm::dmat4& matrix) {
     Bounds result;
     for (int corner = 0; corner < 8; ++corner)

@@ -43,7 +43,14 @@ struct Mesh {
     /// Each vertex's direction of growing u in the normal's plane, unit length; w: the sign of the
     /// bitangent, w * cross(normal, tangent). Length 0: none. Empty without a normal map.
     std::vector<glm::dvec4> tangents = {};
+    /// The texture coordinates of the vertices in further channels: channel 1 first. Vertex::uv is channel 0.
+    std::vector<std::vector<glm::dvec2>> more_uvs = {};
     Bounds bounds() const;
+    glm::dvec2 uv(int channel, std::uint32_t vertex) const {
+        return channel == 0 ? vertices[vertex].uv : more_uvs[std::size_t(channel) - 1][vertex];
+    }
+    /// A copy of a vertex with its texture coordinates, at the end; without its tangent.
+    std::uint32_t copy_vertex(std::uint32_t vertex);
 };
 
 /// One node of a bounding volume hierarchy in depth-first order, without a stack: a ray that misses the box

@@ -27,8 +27,13 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 class MeshReader {
 public:
     /// Triangles have the indices of their materials unless `materials` is null.
-    MeshReader(const fs::path& path, const tinygltf::Model& model, const std::vector<Material>* materials)
-        : path_(path), model_(model), materials_(materials) {}
+    MeshReader(const fs::path& path, const tinygltf::Model& model, const GltfMaterials* materials)
+        : path_(path), model_(model), materials_(materials) {
+        std::size_t most = 0;
+        if (materials)
+            for (const auto& channels : materials->channels) most = std::max(most, channels.size());
+        mesh_.more_uvs.resize(most);
+    }
 
     Mesh read() {
         visited_.resize(model_.nodes.size());
@@ -37,6 +42,7 @@ public:
         if (!mesh_.tangents.empty()) mesh_.tangents.resize(mesh_.vertices.size(), glm::dvec4(0));
         return std::move(mesh_);
     }
+    const std::vector<std::string>& warnings() const { return warnings_; }
 
 private:
     struct Placed {
@@ -163,22 +169,56 @@ private:
                                          tangents->count()));
         const std::size_t first = mesh_.triangles.size();
         const auto sources = append(vertices, triangles, normals.has_value());
+        add_more_uvs(primitive, place, positions->count(), sources);
         if (materials_) mesh_.materials.resize(mesh_.triangles.size(), material_of(primitive, place));
         if (!has_normal_map(primitive)) return;
         if (tangents) place_tangents(*tangents, linear, sources);
-        else make_tangents(mesh_, first);
+        else make_tangents(mesh_, first, material_in(primitive)->maps.normal.channel);
+    }
+
+    /// The texture coordinates of the channels that the primitive's material has, for the mesh's last
+    /// vertices.
+    void add_more_uvs(const tinygltf::Primitive& primitive, const std::string& place, std::size_t count,
+                      const std::vector<std::uint32_t>& sources) {
+        for (std::size_t i = 0; i < mesh_.more_uvs.size(); ++i) {
+            std::vector<glm::dvec2>& uvs = mesh_.more_uvs[i];
+            uvs.resize(mesh_.vertices.size(), glm::dvec2(0));
+            if (!material_in(primitive)) continue;
+            const auto& channels = materials_->channels[std::size_t(primitive.material)];
+            if (i >= channels.size()) continue;
+            const UvChannel& channel = channels[i];
+            const std::string name = fmt::format("TEXCOORD_{}", channel.set);
+            const auto values = attribute(primitive, place, name.c_str(), TINYGLTF_TYPE_VEC2);
+            if (!values)
+                warnings_.push_back(fmt::format("{}: {} has no {}, which a texture of its material needs",
+                                                path_.string(), place, name));
+            else if (values->count() != count)
+                fail_gltf(path_, fmt::format("{} has {} positions, but {} values of {}", place, count,
+                                             values->count(), name));
+            const auto own = uvs.end() - std::ptrdiff_t(sources.size());
+            for (std::size_t k = 0; k < sources.size(); ++k)
+                own[std::ptrdiff_t(k)] =
+                    channel.from_set * glm::dvec3(values ? values->vec2(sources[k]) : glm::dvec2(0), 1);
+        }
+    }
+
+    /// Null without one.
+    const Material* material_in(const tinygltf::Primitive& primitive) const {
+        const int index = primitive.material;
+        if (!materials_ || index < 0 || index >= int(materials_->materials.size())) return nullptr;
+        return &materials_->materials[std::size_t(index)];
     }
 
     int material_of(const tinygltf::Primitive& primitive, const std::string& place) const {
-        if (primitive.material < -1 || primitive.material >= int(materials_->size()))
+        if (primitive.material < -1 || primitive.material >= int(materials_->materials.size()))
             fail_gltf(path_, fmt::format("{} has material {}, the file has {}", place, primitive.material,
-                                         materials_->size()));
+                                         materials_->materials.size()));
         return primitive.material;
     }
 
     bool has_normal_map(const tinygltf::Primitive& primitive) const {
-        return materials_ && primitive.material >= 0 && primitive.material < int(materials_->size()) &&
-               (*materials_)[std::size_t(primitive.material)].maps.normal;
+        const Material* material = material_in(primitive);
+        return material && material->maps.normal;
     }
 
     /// `sources`: which of the primitive's vertices the mesh's last ones are.
@@ -284,8 +324,9 @@ private:
 
     const fs::path& path_;
     const tinygltf::Model& model_;
-    const std::vector<Material>* materials_;
+    const GltfMaterials* materials_;
     Mesh mesh_;
+    std::vector<std::string> warnings_;
     std::vector<bool> visited_;
 };
 
@@ -297,9 +338,12 @@ Mesh read_gltf(const fs::path& path) {
 
 GltfModel read_gltf_model(const fs::path& path) {
     const tinygltf::Model model = load_gltf(path, true);
+    GltfMaterials materials = gltf_materials(path, model);
+    MeshReader reader(path, model, &materials);
     GltfModel result;
-    result.materials = gltf_materials(path, model, result.warnings);
-    result.mesh = MeshReader(path, model, &result.materials).read();
+    result.mesh = reader.read();
+    result.warnings = reader.warnings();
+    result.materials = std::move(materials.materials);
     return result;
 }
 

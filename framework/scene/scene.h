@@ -110,8 +110,7 @@ struct Scene {
     const Material& material_of(int object) const {
         return materials[std::size_t(objects[std::size_t(object)].material)];
     }
-    /// The index of the material that light meets at a triangle of the object. It has the opacity of
-    /// material_of().
+    /// The index of the material that light meets at a triangle of the object.
     std::size_t material_at(int object, std::uint32_t triangle) const {
         const Object& of = objects[std::size_t(object)];
         if (!of.has_mesh_materials) return std::size_t(of.material);
@@ -121,6 +120,8 @@ struct Scene {
     }
     /// Whether any material lets light through.
     bool has_transparency() const;
+    /// The materials that triangles of the object have.
+    std::vector<std::size_t> materials_of(int object) const;
 };
 
 }  // namespace aftershade::scene

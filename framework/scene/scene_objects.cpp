@@ -80,8 +80,8 @@ void SceneReader::read_object(const grammar::Reader& reader) {
     const bool is_mesh = object.shape.kind == ShapeKind::mesh;
     object.has_mesh_materials = is_mesh && !reader.has("material");
     // A height field has no file that gives it materials. A mesh that is not there has its own error.
-    const bool has_file = is_mesh && (object.shape.mesh < 0 ||
-                                      !scene_.meshes[std::size_t(object.shape.mesh)].materials.empty());
+    const Mesh* mesh = object.shape.mesh < 0 ? nullptr : &scene_.meshes[std::size_t(object.shape.mesh)];
+    const bool has_file = is_mesh && (!mesh || mesh->triangles.empty() || !mesh->materials.empty());
     if (!reader.node().find("material") && object.shape.kind != ShapeKind::group && !has_file &&
         !materials_.empty())
         diagnostics_.error(object.place, place + " has no material");

@@ -59,7 +59,7 @@ void SceneRenderer::write_hit(Capture& capture, int x, int y, const World& world
                               const Ray& ray, bool is_last) const {
     const Shading shading = world.shade(surface, ray.origin);
     write_surface(capture, x, y, scene_, surface, shading);
-    const double opacity = world.opacity_of(surface);
+    const double opacity = world.opacity_of(surface, ray.origin);
     if (opacity >= 1) return;
     dvec3 color = opacity * shading.color();
     if (is_last) color += (1 - opacity) * world.radiance(World::past(surface, ray));

@@ -177,41 +177,50 @@ ShadingPlace ShadingGrids::place_of(std::uint32_t id) const {
     return place;
 }
 
-dvec2 ShadingGrids::uv_through(const ShadingPlace& place, std::uint32_t id, const dvec2& part) const {
-    const Mesh& mesh = mesh_of(place.object);
-    const dvec2 on = barycentric_on_plane(ray_through(place.object, place.triangle, id, part),
-                                          corners_of(mesh, place.triangle));
-    return mesh_point(mesh, {0, place.triangle, on}).uv;
+dvec2 ShadingGrids::weights_through(const ShadingPlace& place, std::uint32_t id, const dvec2& part) const {
+    return barycentric_on_plane(ray_through(place.object, place.triangle, id, part),
+                                corners_of(mesh_of(place.object), place.triangle));
 }
 
-glm::dmat2 ShadingGrids::uv_of_cell(const ShadingPlace& place, std::uint32_t id) const {
-    return {uv_through(place, id, {1, 0.5}) - uv_through(place, id, {0, 0.5}),
-            uv_through(place, id, {0.5, 1}) - uv_through(place, id, {0.5, 0})};
+glm::dmat2 ShadingGrids::weights_of_cell(const ShadingPlace& place, std::uint32_t id) const {
+    return {weights_through(place, id, {1, 0.5}) - weights_through(place, id, {0, 0.5}),
+            weights_through(place, id, {0.5, 1}) - weights_through(place, id, {0.5, 0})};
 }
 
-/// `middle` is the cell's: it stands for a cell of which the triangle covers no place.
+/// Each place counts as much as it is opaque. `middle` is the cell's: it stands for a cell of which the
+/// triangle covers no place.
 dvec3 ShadingGrids::mean_albedo(const Surface& middle, std::uint32_t id, const Material& material) const {
     const Mesh& mesh = mesh_of(middle.object);
     const std::array<dvec3, 3> corners = corners_of(mesh, middle.triangle);
-    const glm::dmat2 uv_of_place = middle.uv_of_pixel.value_or(glm::dmat2(0)) / double(kAlbedoPoints);
+    TexturePoint at = world_.texture_point(middle);
+    at.weights_of_pixel = middle.weights_of_pixel.value_or(glm::dmat2(0)) / double(kAlbedoPoints);
     dvec3 sum(0);
-    int count = 0;
+    double weights = 0;
     for (int i = 0; i < kAlbedoPoints * kAlbedoPoints; ++i) {
         const dvec2 part = (dvec2(i % kAlbedoPoints, i / kAlbedoPoints) + 0.5) / double(kAlbedoPoints);
         const dvec2 barycentric =
             barycentric_on_plane(ray_through(middle.object, middle.triangle, id, part), corners);
         if (barycentric.x < 0 || barycentric.y < 0 || barycentric.x + barycentric.y > 1) continue;
-        sum += albedo_at(material, mesh_point(mesh, {0, middle.triangle, barycentric}).uv, uv_of_place);
-        ++count;
+        at.barycentric = barycentric;
+        at.uv = mesh_point(mesh, {0, middle.triangle, barycentric}).uv;
+        const double weight = is_hole(material, at) ? 0
+                              : material.blends && material.opacity > 0
+                                  ? opacity_at(material, at) / material.opacity
+                                  : 1;
+        sum += weight * albedo_at(material, at);
+        weights += weight;
     }
-    return count > 0 ? sum / double(count) : albedo_at(material, middle.uv, uv_of_place);
+    if (weights > 0) return sum / weights;
+    at.barycentric = middle.barycentric;
+    at.uv = middle.uv;
+    return albedo_at(material, at);
 }
 
 Surface ShadingGrids::surface_of(std::uint32_t id, std::uint32_t ray_id) const {
     const ShadingPlace place = place_of(id);
     Surface surface = world_.surface_on(place.object, place.triangle, place.barycentric, place.from_behind);
     surface.light_seed = light_seed(ray_id, 0);
-    if (world_.material_at(surface).maps.any()) surface.uv_of_pixel = uv_of_cell(place, id);
+    if (world_.material_at(surface).maps.any()) surface.weights_of_pixel = weights_of_cell(place, id);
     return surface;
 }
 

@@ -76,9 +76,10 @@ private:
     const Mesh& mesh_of(int object) const;
     /// The ray through `part` of a cell, 0 to 1 along x and y, in the object's space.
     Ray ray_through(int object, std::uint32_t triangle, std::uint32_t id, const glm::dvec2& part) const;
-    glm::dvec2 uv_through(const ShadingPlace& place, std::uint32_t id, const glm::dvec2& part) const;
-    /// The sides of a cell in texture coordinates.
-    glm::dmat2 uv_of_cell(const ShadingPlace& place, std::uint32_t id) const;
+    /// Where that ray meets the triangle's plane, which may be outside the triangle.
+    glm::dvec2 weights_through(const ShadingPlace& place, std::uint32_t id, const glm::dvec2& part) const;
+    /// The sides of a cell in a triangle's weights.
+    glm::dmat2 weights_of_cell(const ShadingPlace& place, std::uint32_t id) const;
     glm::dvec3 mean_albedo(const Surface& middle, std::uint32_t id, const Material& material) const;
 
     const SceneRenderer& renderer_;

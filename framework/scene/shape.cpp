@@ -99,7 +99,8 @@ double ray_triangle(const Ray& ray, const Sides& sides, double low, double high,
     return t;
 }
 
-bool intersect_mesh(const MeshTree& tree, const Ray& ray, double low, double high, bool any, ShapeHit& hit) {
+bool intersect_mesh(const MeshTree& tree, const Ray& ray, double low, double high, bool any, ShapeHit& hit,
+                    const Holes* holes) {
     const dvec3 inverse = 1.0 / ray.direction;
     hit.t = high;
     bool found = false;
@@ -113,7 +114,9 @@ bool intersect_mesh(const MeshTree& tree, const Ray& ray, double low, double hig
             dvec2 barycentric;
             const double t = ray_triangle(ray, tree.sides[i], low, hit.t, barycentric);
             if (t == kNone) continue;
-            hit = {t, tree.bvh.items[i], barycentric};
+            const ShapeHit met{t, tree.bvh.items[i], barycentric};
+            if (holes && holes->has(met)) continue;
+            hit = met;
             found = true;
             if (any) return true;
         }
@@ -204,7 +207,7 @@ MeshTree::MeshTree(const Mesh& of) : mesh(&of) {
 }
 
 bool intersect(const Shape& shape, const MeshTree* mesh, const Ray& ray, double low, double high, bool any,
-               ShapeHit& hit) {
+               ShapeHit& hit, const Holes* holes) {
     const dvec3& half = shape.half_size_m;
     switch (shape.kind) {
         case ShapeKind::group: return false;
@@ -215,7 +218,7 @@ bool intersect(const Shape& shape, const MeshTree* mesh, const Ray& ray, double 
             hit.t = first_inside(ray_slabs(ray, 1.0 / ray.direction, -half, half), low, high);
             break;
         case ShapeKind::cylinder: hit.t = ray_cylinder(ray, half, low, high); break;
-        case ShapeKind::mesh: return intersect_mesh(*mesh, ray, low, high, any, hit);
+        case ShapeKind::mesh: return intersect_mesh(*mesh, ray, low, high, any, hit, holes);
     }
     return hit.t != kNone;
 }

@@ -64,10 +64,17 @@ inline bool meets(const Ray& ray, const glm::dvec3& inverse_direction, const Bou
     return enter <= leave && leave > low && enter < high;
 }
 
+/// Where a mesh has no surface although it has a triangle.
+class Holes {
+public:
+    virtual ~Holes() = default;
+    virtual bool has(const ShapeHit& hit) const = 0;
+};
+
 /// The first point of the shape with low < t < high; false where there is none. `mesh` is that of a mesh.
-/// With `any` the first that is found will do.
+/// With `any` the first that is found will do. `holes` are a mesh's; null: none.
 bool intersect(const Shape& shape, const MeshTree* mesh, const Ray& ray, double low, double high, bool any,
-               ShapeHit& hit);
+               ShapeHit& hit, const Holes* holes = nullptr);
 
 /// The point of a mesh, by the triangle and its weights alone.
 ShapePoint mesh_point(const Mesh& mesh, const ShapeHit& hit);

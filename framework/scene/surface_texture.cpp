@@ -10,12 +10,12 @@
 namespace aftershade::scene {
 
 using glm::dvec2;
-using glm::dvec3;
+using glm::dvec4;
 using glm::ivec2;
 
 namespace {
 
-using Values = std::vector<glm::vec3>;
+using Values = std::vector<glm::vec4>;
 
 double decoded(TexelValues values, int byte) {
     if (values == TexelValues::srgb) return decode_srgb(byte / 255.0);
@@ -56,14 +56,14 @@ Values coarser(const Values& from, const ivec2& fine, const ivec2& coarse) {
     Values result(std::size_t(coarse.x) * std::size_t(coarse.y));
     for (int y = 0; y < coarse.y; ++y)
         for (int x = 0; x < coarse.x; ++x) {
-            dvec3 sum(0);
+            dvec4 sum(0);
             for_each_covered(fine.y, coarse.y, y, [&](int from_y, double share_y) {
                 for_each_covered(fine.x, coarse.x, x, [&](int from_x, double share_x) {
                     const std::size_t index = std::size_t(from_y) * std::size_t(fine.x) + std::size_t(from_x);
-                    sum += share_x * share_y * dvec3(from[index]);
+                    sum += share_x * share_y * dvec4(from[index]);
                 });
             });
-            result[std::size_t(y) * std::size_t(coarse.x) + std::size_t(x)] = glm::vec3(sum);
+            result[std::size_t(y) * std::size_t(coarse.x) + std::size_t(x)] = glm::vec4(sum);
         }
     return result;
 }
@@ -114,16 +114,17 @@ SurfaceTexture::SurfaceTexture(const Image& stored, TexelValues values, const Te
     level.reserve(std::size_t(size.x) * std::size_t(size.y));
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
-            glm::vec3 value;
+            glm::vec4 value(0, 0, 0, 1);
             for (int c = 0; c < 3; ++c)
                 value[c] = float(decoding(values)[byte_of(double(stored.at(x, y, grey ? 0 : c)))]);
+            if (stored.channels() % 2 == 0) value.w = stored.at(x, y, stored.channels() - 1);
             level.push_back(value);
         }
     for (;;) {
         levels_.push_back({size, texels_.size()});
-        for (const glm::vec3& value : level)
+        for (const glm::vec4& value : level)
             texels_.push_back(encoded(values, double(value.x)) | encoded(values, double(value.y)) << 8 |
-                              encoded(values, double(value.z)) << 16);
+                              encoded(values, double(value.z)) << 16 | byte_of(double(value.w)) << 24);
         if (size == ivec2(1)) return;
         const ivec2 half = glm::max(size / 2, 1);
         level = coarser(level, size, half);
@@ -131,15 +132,15 @@ SurfaceTexture::SurfaceTexture(const Image& stored, TexelValues values, const Te
     }
 }
 
-dvec3 SurfaceTexture::texel(const Level& level, int x, int y) const {
+dvec4 SurfaceTexture::texel(const Level& level, int x, int y) const {
     const std::size_t row = std::size_t(inside(sampling_.wrap_v, y, level.size.y));
     const std::size_t column = std::size_t(inside(sampling_.wrap_u, x, level.size.x));
     const std::uint32_t word = texels_[level.first + row * std::size_t(level.size.x) + column];
     const auto& table = decoding(values_);
-    return {table[word & 255], table[word >> 8 & 255], table[word >> 16 & 255]};
+    return {table[word & 255], table[word >> 8 & 255], table[word >> 16 & 255], (word >> 24) / 255.0};
 }
 
-dvec3 SurfaceTexture::blended(std::size_t index, const dvec2& uv) const {
+dvec4 SurfaceTexture::blended(std::size_t index, const dvec2& uv) const {
     const Level& level = levels_[index];
     const dvec2 at =
         dvec2(folded(sampling_.wrap_u, uv.x), folded(sampling_.wrap_v, uv.y)) * dvec2(level.size) - 0.5;
@@ -150,13 +151,13 @@ dvec3 SurfaceTexture::blended(std::size_t index, const dvec2& uv) const {
         glm::mix(texel(level, first.x, first.y + 1), texel(level, first.x + 1, first.y + 1), part.x), part.y);
 }
 
-dvec3 SurfaceTexture::nearest(const dvec2& uv) const {
+dvec4 SurfaceTexture::nearest(const dvec2& uv) const {
     const Level& level = levels_.front();
     const ivec2 at(dvec2(folded(sampling_.wrap_u, uv.x), folded(sampling_.wrap_v, uv.y)) * dvec2(level.size));
     return texel(level, at.x, at.y);
 }
 
-dvec3 SurfaceTexture::at(const dvec2& uv, const glm::dmat2& uv_of_pixel) const {
+dvec4 SurfaceTexture::at(const dvec2& uv, const glm::dmat2& uv_of_pixel) const {
     const dvec2 size(levels_.front().size);
     const Footprint footprint = footprint_of({uv_of_pixel[0] * size, uv_of_pixel[1] * size});
     // A little less than the ratio, so that single and double precision choose alike where it is whole.
@@ -166,7 +167,7 @@ dvec3 SurfaceTexture::at(const dvec2& uv, const glm::dmat2& uv_of_pixel) const {
     const double level = across > 1 ? std::min(std::log2(across), double(levels_.size() - 1)) : 0.0;
     const auto fine = std::size_t(level);
     const double part = level - double(fine);
-    dvec3 sum(0);
+    dvec4 sum(0);
     for (int tap = 0; tap < taps; ++tap) {
         const double along = ((tap + 0.5) / taps - 0.5) * footprint.longer;
         const dvec2 place = taps > 1 ? uv + along * footprint.axis / size : uv;

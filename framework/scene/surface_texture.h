@@ -24,17 +24,18 @@ struct TextureSampling {
     bool nearest = false;  ///< one texel where a pixel is smaller than a texel; else four are blended
 };
 
-/// Three channels of 8 bits, and the means of their areas at half the size, a quarter and so on.
+/// Three channels and alpha of 8 bits, and the means of their areas at half the size, a quarter and so on.
 /// [immutable: any thread]
 class SurfaceTexture {
 public:
-    /// `stored`: 1 to 4 channels, 0 to 1, as the file has them. Grey becomes three channels; alpha is left.
+    /// `stored`: 1 to 4 channels, 0 to 1, as the file has them. Grey becomes three channels.
     SurfaceTexture(const Image& stored, TexelValues values, const TextureSampling& sampling);
 
-    /// The mean over a pixel. u grows along the rows, v down, and the picture fills 0 to 1. The columns of
-    /// `uv_of_pixel` are the pixel's two sides in texture coordinates. Up to kMostTaps places along the
-    /// longer axis of its footprint are looked up (Heckbert 1989), each trilinearly (Williams 1983).
-    glm::dvec3 at(const glm::dvec2& uv, const glm::dmat2& uv_of_pixel) const;
+    /// The mean over a pixel; w: alpha, 0 to 1. u grows along the rows, v down, and the picture fills 0 to 1.
+    /// The columns of `uv_of_pixel` are the pixel's two sides in texture coordinates. Up to kMostTaps places
+    /// along the longer axis of its footprint are looked up (Heckbert 1989), each trilinearly (Williams
+    /// 1983).
+    glm::dvec4 at(const glm::dvec2& uv, const glm::dmat2& uv_of_pixel) const;
     static constexpr int kMostTaps = 8;
 
     struct Level {
@@ -42,15 +43,15 @@ public:
         std::size_t first = 0;  ///< index into texels()
     };
     const std::vector<Level>& levels() const { return levels_; }
-    /// The texels of all levels, the finest first; red in the lowest byte, then green and blue.
+    /// The texels of all levels, the finest first; red in the lowest byte, then green, blue and alpha.
     const std::vector<std::uint32_t>& texels() const { return texels_; }
     TexelValues values() const { return values_; }
     const TextureSampling& sampling() const { return sampling_; }
 
 private:
-    glm::dvec3 texel(const Level& level, int x, int y) const;
-    glm::dvec3 blended(std::size_t level, const glm::dvec2& uv) const;
-    glm::dvec3 nearest(const glm::dvec2& uv) const;
+    glm::dvec4 texel(const Level& level, int x, int y) const;
+    glm::dvec4 blended(std::size_t level, const glm::dvec2& uv) const;
+    glm::dvec4 nearest(const glm::dvec2& uv) const;
 
     TexelValues values_;
     TextureSampling sampling_;

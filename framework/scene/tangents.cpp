@@ -39,7 +39,7 @@ dvec3 unit_or_zero(const dvec3& v) {
 
 }  // namespace
 
-void make_tangents(Mesh& mesh, std::size_t first) {
+void make_tangents(Mesh& mesh, std::size_t first, int channel) {
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     mesh.tangents.resize(mesh.vertices.size(), glm::dvec4(0));
     // Of each vertex, itself or a copy for triangles that mirror the texture, and for others.
@@ -47,14 +47,16 @@ void make_tangents(Mesh& mesh, std::size_t first) {
     for (std::size_t i = first; i < mesh.triangles.size(); ++i) {
         std::array<std::uint32_t, 3>& corners = mesh.triangles[i];
         std::array<Vertex, 3> vertices;
-        for (std::size_t k = 0; k < 3; ++k) vertices[k] = mesh.vertices[corners[k]];
+        for (std::size_t k = 0; k < 3; ++k) {
+            vertices[k] = mesh.vertices[corners[k]];
+            vertices[k].uv = mesh.uv(channel, corners[k]);
+        }
         const glm::dvec4 tangent = tangent_of(vertices[0], vertices[1], vertices[2]);
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t side = tangent.w > 0 ? 1 : 0;
             auto& copies = of_side[corners[k]];
             if (copies[side] == kNone && copies[1 - side] != kNone) {
-                copies[side] = std::uint32_t(mesh.vertices.size());
-                mesh.vertices.push_back(vertices[k]);
+                copies[side] = mesh.copy_vertex(corners[k]);
                 mesh.tangents.emplace_back(0);
             } else if (copies[side] == kNone) {
                 copies[side] = corners[k];

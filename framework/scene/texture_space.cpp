@@ -37,10 +37,14 @@ Capture SceneRenderer::render_texture_space(int frame, int object, int side_px) 
             point.uv = {(x + 0.5) / side_px, (y + 0.5) / side_px};
             Surface surface = world.surface(object, point);
             surface.precision = 1e-6;  // the map holds floats
-            surface.uv_of_pixel = glm::dmat2(1.0 / side_px);
             if (mesh) {
                 surface.triangle = map.triangle.uint_at(x, y, 0);
                 surface.barycentric = {map.weights.at(x, y, 0), map.weights.at(x, y, 1)};
+                const auto& corner = mesh->mesh->triangles[surface.triangle];
+                const glm::dvec2 uv = mesh->mesh->uv(0, corner[0]);
+                surface.weights_of_pixel = glm::inverse(glm::dmat2(mesh->mesh->uv(0, corner[1]) - uv,
+                                                                   mesh->mesh->uv(0, corner[2]) - uv)) /
+                                           double(side_px);
             }
             write_surface(capture, x, y, scene_, surface, world.shade(surface, eye));
         }

@@ -48,7 +48,7 @@ std::optional<Surface> trace_stochastic(const World& world, const Ray& ray, cons
     std::optional<Surface> met;
     int crossing = 0;
     world.cross(ray, [&](const Surface& surface) {
-        const double opacity = world.opacity_of(surface);
+        const double opacity = world.opacity_of(surface, ray.origin);
         if (opacity < 1 && stops.at(crossing++) >= opacity) return true;
         met = surface;
         return false;

@@ -252,7 +252,7 @@ Traced trace_lists(const SceneRenderer& renderer, const ShadingGrids& grids, int
                 traced.ends[pixel_of(renderer, x, y) * std::size_t(settings.samples) + std::size_t(sample)];
             int crossing = 0;
             world.cross(ray, [&](const Surface& surface) {
-                const double opacity = world.opacity_of(surface);
+                const double opacity = world.opacity_of(surface, ray.origin);
                 const std::uint32_t id = grids.id_of(surface);
                 const double stop = stops.at(crossing++);
                 if (opacity <= 0) return true;

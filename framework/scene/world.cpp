@@ -29,7 +29,42 @@ void face(Surface& surface, bool from_behind) {
 Geometry::Geometry(const Scene& scene) : scene_(scene) {
     meshes_.reserve(scene.meshes.size());
     for (const Mesh& mesh : scene.meshes) meshes_.emplace_back(mesh);
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        ObjectAlpha& alpha = alphas_.emplace_back();
+        const bool own = scene.objects[i].has_mesh_materials;
+        for (const std::size_t material : scene.materials_of(int(i))) {
+            alpha.has_holes = alpha.has_holes || scene.materials[material].alpha_cutoff > 0;
+            alpha.is_mixed = alpha.is_mixed || (own && scene.materials[material].is_transparent());
+        }
+    }
 }
+
+TexturePoint Geometry::texture_point(int object, const ShapeHit& hit) const {
+    TexturePoint point;
+    point.mesh = mesh_of(scene_.objects[std::size_t(object)].shape)->mesh;
+    point.triangle = hit.triangle;
+    point.barycentric = hit.barycentric;
+    point.uv = mesh_point(*point.mesh, hit).uv;
+    return point;
+}
+
+namespace {
+
+class HolesOfObject : public Holes {
+public:
+    HolesOfObject(const Geometry& geometry, int object) : geometry_(geometry), object_(object) {}
+    bool has(const ShapeHit& hit) const override {
+        const Scene& scene = geometry_.scene();
+        const Material& material = scene.materials[scene.material_at(object_, hit.triangle)];
+        return material.alpha_cutoff > 0 && is_hole(material, geometry_.texture_point(object_, hit));
+    }
+
+private:
+    const Geometry& geometry_;
+    int object_;
+};
+
+}  // namespace
 
 World::World(const Geometry& geometry, SceneState state, double px_per_tangent)
     : geometry_(&geometry), state_(std::move(state)), px_per_tangent_(px_per_tangent) {
@@ -40,8 +75,8 @@ World::World(const Geometry& geometry, SceneState state, double px_per_tangent)
         seen_of_object_.push_back(local.empty() ? -1 : int(seen_.size()));
         if (local.empty()) continue;
         const dmat4& matrix = state_.world_from_object[i];
-        seen_.push_back({int(i), object.casts_shadow, scene().material_of(int(i)).opacity, &object.shape,
-                         mesh, glm::dmat4x3(glm::inverse(matrix))});
+        seen_.push_back({int(i), object.casts_shadow, scene().material_of(int(i)).opacity,
+                         geometry.alpha_of(i), &object.shape, mesh, glm::dmat4x3(glm::inverse(matrix))});
         bounds_.push_back(transformed(local, matrix));
         // A flat box keeps rays that run along it only if it has some height.
         const dvec3 margin = 1e-12 * glm::max(glm::abs(bounds_.back().low), glm::abs(bounds_.back().high));
@@ -81,12 +116,30 @@ void World::walk(const Ray& ray, double low, double& high, const Visit& visit) c
     }
 }
 
+/// intersect() with the object's holes.
+bool World::meets_object(const Seen& seen, const Ray& local, double low, double high, bool any,
+                         ShapeHit& hit) const {
+    if (!seen.alpha.has_holes) return intersect(*seen.shape, seen.mesh, local, low, high, any, hit);
+    const HolesOfObject holes(*geometry_, seen.object);
+    return intersect(*seen.shape, seen.mesh, local, low, high, any, hit, &holes);
+}
+
+double World::opacity_of(const Surface& surface, const dvec3& eye) const {
+    if (!geometry_->alpha_of(std::size_t(surface.object)).is_mixed)
+        return scene().material_of(surface.object).opacity;
+    const Material& material = material_at(surface);
+    if (!material.blends) return material.opacity;
+    TexturePoint at = texture_point(surface);
+    at.weights_of_pixel = weights_of_pixel(surface, eye);
+    return opacity_at(material, at);
+}
+
 std::optional<Surface> World::trace(const Ray& ray, double low, double high, int only) const {
     const Seen* nearest = nullptr;
     ShapeHit nearest_hit;
     const auto visit = [&](const Seen& seen) {
         ShapeHit hit;
-        if (intersect(*seen.shape, seen.mesh, seen.local(ray), low, high, false, hit)) {
+        if (meets_object(seen, seen.local(ray), low, high, false, hit)) {
             nearest = &seen;
             nearest_hit = hit;
             high = hit.t;
@@ -114,7 +167,7 @@ std::vector<Surface> World::trace_through(const Ray& ray, std::size_t most) cons
             entered.erase(inside);
             return true;
         }
-        if (!surface.from_behind && opacity_of(surface) >= 1) entered.push_back(surface.object);
+        if (!surface.from_behind && opacity_of(surface, ray.origin) >= 1) entered.push_back(surface.object);
         found.push_back(surface);
         return found.size() < most;
     });
@@ -125,7 +178,7 @@ dvec3 World::radiance(const Ray& ray, int* shadings) const {
     dvec3 light(0);
     double through = 1;
     cross(ray, [&](const Surface& surface) {
-        const double opacity = opacity_of(surface);
+        const double opacity = opacity_of(surface, ray.origin);
         if (opacity <= 0) return true;
         light += through * opacity * shade(surface, ray.origin).color();
         through *= 1 - opacity;
@@ -141,7 +194,7 @@ bool World::is_hidden(const dvec3& from, const dvec3& to) const {
     bool hidden = false;
     walk(ray, 0, high, [&](const Seen& seen) {
         ShapeHit hit;
-        hidden = intersect(*seen.shape, seen.mesh, seen.local(ray), 0, 1, true, hit);
+        hidden = meets_object(seen, seen.local(ray), 0, 1, true, hit);
         return hidden;
     });
     return hidden;
@@ -153,12 +206,16 @@ double World::light_through(const dvec3& from, const dvec3& to) const {
     walk(ray, 0, high, [&](const Seen& seen) {
         if (!seen.casts_shadow) return false;
         const Ray local = seen.local(ray);
-        const bool opaque = seen.opacity >= 1;
+        const bool opaque = seen.opacity >= 1 && !seen.alpha.is_mixed;
         ShapeHit hit;
         double low = 0;
         for (int crossing = 0; crossing < kMostCrossings && share > 0; ++crossing) {
-            if (!intersect(*seen.shape, seen.mesh, local, low, 1, opaque, hit)) break;
-            share *= 1 - seen.opacity;
+            if (!meets_object(seen, local, low, 1, opaque, hit)) break;
+            double opacity = seen.opacity;
+            if (seen.alpha.is_mixed)
+                opacity = opacity_at(scene().materials[scene().material_at(seen.object, hit.triangle)],
+                                     geometry_->texture_point(seen.object, hit));
+            share *= 1 - opacity;
             low = hit.t * kPast;
         }
         return share <= 0;

@@ -15,6 +15,12 @@
 
 namespace aftershade::scene {
 
+/// What triangles of an object do with light that comes through them, where they differ.
+struct ObjectAlpha {
+    bool has_holes = false;
+    bool is_mixed = false;  ///< opacity goes by the triangle or by a texture
+};
+
 /// The unmoving part: the meshes' hierarchies. [immutable: any thread]
 class Geometry {
 public:
@@ -26,9 +32,14 @@ public:
         return shape.mesh >= 0 ? &meshes_[std::size_t(shape.mesh)] : nullptr;
     }
 
+    const ObjectAlpha& alpha_of(std::size_t object) const { return alphas_[object]; }
+    /// A point of an object's triangle, for its textures.
+    TexturePoint texture_point(int object, const ShapeHit& hit) const;
+
 private:
     const Scene& scene_;
     std::vector<MeshTree> meshes_;
+    std::vector<ObjectAlpha> alphas_;
 };
 
 struct Surface {
@@ -42,8 +53,8 @@ struct Surface {
     int object = -1;             ///< index into Scene::objects
     std::uint32_t triangle = 0;  ///< of a mesh
     double t = 0;                ///< along the ray
-    /// As SurfaceTexture::at() has it; without one, that of a pixel of the camera.
-    std::optional<glm::dmat2> uv_of_pixel;
+    /// As TexturePoint has it; without one, that of a pixel of the camera.
+    std::optional<glm::dmat2> weights_of_pixel;
     double precision = 1e-9;                  ///< of the position, over the size of its coordinates
     std::optional<std::uint32_t> light_seed;  ///< of its random rays; without one, a hash of `local`
 };
@@ -91,7 +102,9 @@ public:
     static Ray past(const Surface& surface, const Ray& ray) {
         return {ray.origin + surface.t * kPast * ray.direction, ray.direction};
     }
-    double opacity_of(const Surface& surface) const { return scene().material_of(surface.object).opacity; }
+    /// As a pixel of a ray from `eye` sees it.
+    double opacity_of(const Surface& surface, const glm::dvec3& eye) const;
+    TexturePoint texture_point(const Surface& surface) const;
 
     /// A point of an object: by its own space. Normals are outwards.
     Surface surface(int object, const ShapePoint& point) const;
@@ -105,9 +118,11 @@ public:
     /// that it faces away from.
     Shading shade(const Surface& surface, const glm::dvec3& eye, std::span<double> seen = {}) const;
     /// Shading::specular alone, the one part that depends on the eye, to the bit and without rays: `seen` is
-    /// what shade() wrote. The surface has a `uv_of_pixel` if its material has maps.
+    /// what shade() wrote. The surface has `weights_of_pixel` if its
+    /// material has maps.
     glm::dvec3 highlights(const Surface& surface, const glm::dvec3& eye, std::span<const double> seen) const;
-    /// Whether any ray that shade() sends from the surface meets one of the boxes. The same of `uv_of_pixel`.
+    /// Whether any ray that shade() sends from the surface meets one of the boxes. The same of
+    /// `weights_of_pixel`.
     bool light_meets(const Surface& surface, const Bvh& boxes) const;
     /// An object's bounds in world space; empty where there is nothing to see of it.
     Bounds bounds(int object) const;
@@ -120,7 +135,8 @@ private:
     struct Seen {
         int object = 0;
         bool casts_shadow = true;
-        double opacity = 1;
+        double opacity = 1;  ///< unless it is mixed
+        ObjectAlpha alpha;
         const Shape* shape = nullptr;
         const MeshTree* mesh = nullptr;
         glm::dmat4x3 object_from_world{1};
@@ -140,9 +156,10 @@ private:
         Finish finish;
     };
     Finished finished(const Surface& surface, const glm::dvec3& eye) const;
-    glm::dmat2 uv_of_pixel(const Surface& surface, const glm::dvec3& eye) const;
-    glm::dvec3 mapped_normal(const Surface& surface, const MaterialMaps& maps,
-                             const glm::dmat2& uv_of_pixel) const;
+    bool meets_object(const Seen& seen, const Ray& local, double low, double high, bool any,
+                      ShapeHit& hit) const;
+    glm::dmat2 weights_of_pixel(const Surface& surface, const glm::dvec3& eye) const;
+    glm::dvec3 mapped_normal(const Surface& surface, const MaterialMaps& maps, const TexturePoint& at) const;
     /// Light of one source at a surface, as if nothing stood between.
     struct Arriving {
         glm::dvec3 toward{0};    ///< the light's middle

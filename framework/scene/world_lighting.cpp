@@ -97,6 +97,12 @@ dvec3 highlight(const Finish& finish, const dvec3& normal, const dvec3& to_light
            (finish.reflectance + (1.0 - finish.reflectance) * squared * squared * grazing);
 }
 
+/// Along the normal where the eye lies on the surface: a camera in a triangle's plane meets it nowhere else.
+dvec3 direction_to(const dvec3& eye, const Surface& surface) {
+    const dvec3 way = eye - surface.position;
+    return way == dvec3(0) ? surface.normal : glm::normalize(way);
+}
+
 /// Whether a ray meets one of the boxes between its origin and the end of its direction.
 bool meets_any(const Bvh& boxes, const Ray& ray) {
     const dvec3 inverse = 1.0 / ray.direction;
@@ -219,7 +225,7 @@ Shading World::light(const Surface& surface, const Finish& finish, const dvec3* 
 }
 
 dvec3 World::highlights(const Surface& surface, const dvec3& eye, std::span<const double> seen) const {
-    const dvec3 to_eye = glm::normalize(eye - surface.position);
+    const dvec3 to_eye = direction_to(eye, surface);
     const auto [lit, finish] = finished(surface, eye);
     dvec3 specular(0);
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -248,14 +254,15 @@ bool World::light_meets(const Surface& surface, const Bvh& boxes) const {
 
 World::Finished World::finished(const Surface& surface, const dvec3& eye) const {
     const Material& material = material_at(surface);
-    const glm::dmat2 footprint = material.maps.any() ? uv_of_pixel(surface, eye) : glm::dmat2(0);
-    Finished result{surface, finish_at(material, surface.uv, footprint)};
-    if (material.maps.normal) result.surface.normal = mapped_normal(surface, material.maps, footprint);
+    TexturePoint at = texture_point(surface);
+    if (material.maps.any()) at.weights_of_pixel = weights_of_pixel(surface, eye);
+    Finished result{surface, finish_at(material, at)};
+    if (material.maps.normal) result.surface.normal = mapped_normal(surface, material.maps, at);
     return result;
 }
 
 Shading World::shade(const Surface& surface, const dvec3& eye, std::span<double> seen) const {
-    const dvec3 to_eye = glm::normalize(eye - surface.position);
+    const dvec3 to_eye = direction_to(eye, surface);
     const auto [lit, finish] = finished(surface, eye);
     Shading shading = light(lit, finish, &to_eye, seen);
     shading.albedo = finish.albedo;

@@ -21,8 +21,8 @@ constexpr double kLeastCosine = 1e-3;
 
 /// Where the rays through the pixel's neighbours meet the surface's plane, to first order (Igehy 1999,
 /// Tracing Ray Differentials).
-dmat2 World::uv_of_pixel(const Surface& surface, const dvec3& eye) const {
-    if (surface.uv_of_pixel) return *surface.uv_of_pixel;
+dmat2 World::weights_of_pixel(const Surface& surface, const dvec3& eye) const {
+    if (surface.weights_of_pixel) return *surface.weights_of_pixel;
     const Seen& seen = seen_[std::size_t(seen_of_object_[std::size_t(surface.object)])];
     if (!seen.mesh || px_per_tangent_ <= 0) return dmat2(0);
     const double depth_m = std::abs((state_.camera.camera_from_world * dvec4(surface.position, 1)).z);
@@ -39,17 +39,26 @@ dmat2 World::uv_of_pixel(const Surface& surface, const dvec3& eye) const {
         const dvec3 axis(state_.camera.world_from_camera[i]);
         const dvec3 side =
             linear * (depth_m / px_per_tangent_ * (axis - glm::dot(normal, axis) / along * view));
-        result[i] = (glm::dot(glm::cross(side, ac), area) * (b.uv - a.uv) +
-                     glm::dot(glm::cross(ab, side), area) * (c.uv - a.uv)) /
+        result[i] = dvec2(glm::dot(glm::cross(side, ac), area), glm::dot(glm::cross(ab, side), area)) /
                     glm::dot(area, area);
     }
     return result;
 }
 
+TexturePoint World::texture_point(const Surface& surface) const {
+    TexturePoint point;
+    point.uv = surface.uv;
+    const MeshTree* mesh = seen_[std::size_t(seen_of_object_[std::size_t(surface.object)])].mesh;
+    point.mesh = mesh ? mesh->mesh : nullptr;
+    point.triangle = surface.triangle;
+    point.barycentric = surface.barycentric;
+    return point;
+}
+
 /// In world space. The tangent is made perpendicular to the normal and of unit length at each point, which
 /// MikkTSpace's shaders do not do. A back has the front's normal, reversed (glTF 2.0, 3.9.5).
-dvec3 World::mapped_normal(const Surface& surface, const MaterialMaps& maps, const dmat2& footprint) const {
-    const dvec3 texel = maps.normal->at(surface.uv, footprint);
+dvec3 World::mapped_normal(const Surface& surface, const MaterialMaps& maps, const TexturePoint& at) const {
+    const dvec3 texel(at.of(maps.normal));
     const Seen& seen = seen_[std::size_t(seen_of_object_[std::size_t(surface.object)])];
     if ((texel.x == 0 && texel.y == 0) || !seen.mesh) return surface.normal;
     const Mesh& mesh = *seen.mesh->mesh;

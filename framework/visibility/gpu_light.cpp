@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "framework/visibility/bands.h"
 #include "framework/visibility/light_scene.h"
+#include "framework/visibility/world_buffers.h"
 
 namespace aftershade {
-std::string_view visibility_shade_shader();    // shade.comp
-std::string_view visibility_resolve_shader();  // resolve.comp
+std::string_view visibility_shade_shader();        // shade.comp with alpha_off.glsl
+std::string_view visibility_shade_alpha_shader();  // and with alpha_on.glsl
+std::string_view visibility_resolve_shader();      // resolve.comp
 }  // namespace aftershade
 
 namespace aftershade::visibility {
@@ -27,10 +30,9 @@ struct ShadeSettings {
     glm::vec2 size_px{0};
     float px_per_tangent = 0;
     std::uint32_t id_count = 0;
-    std::uint32_t node_count = 0;
     std::uint32_t surface_count = 0;
     std::uint32_t light_count = 0;
-    std::uint32_t unused = 0;
+    std::uint32_t unused[2] = {};
 };
 
 struct ResolveSettings {
@@ -54,24 +56,29 @@ public:
     LightGraph(Passes& passes, const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
                const Room& room, std::size_t max_buffer_bytes)
         : passes_(passes),
-          scene_(make_light_scene(renderer, grids, max_buffer_bytes)),
           scene_path_(renderer.scene().path.string()),
+          scene_(make_light_surfaces(renderer.scene(), grids)),
+          world_(graph_, renderer,
+                 {.light = true, .tangents_at = &grids.reference(), .max_bytes = max_buffer_bytes}),
           executor_(executor_of(passes, make_graph(room))) {
         shade_.world_from_camera = glm::mat4(grids.reference().camera.world_from_camera);
         shade_.ambient = with(renderer.scene().ambient, double(renderer.scene().ambient_rays));
         shade_.size_px = {renderer.width_px(), renderer.height_px()};
         shade_.px_per_tangent = float(renderer.pixels_per_tangent(grids.reference().camera));
-        shade_.node_count = std::uint32_t(scene_.nodes.size());
         shade_.surface_count = std::uint32_t(scene_.surfaces.size());
-        shade_.light_count = std::uint32_t(scene_.lights.size());
-        set_scene();
+        shade_.light_count = std::uint32_t(renderer.scene().lights.size());
+        world_.set(executor_);
+        world_.set_moments(executor_, kShade, {grids.world()});
+        set(executor_, surfaces_, scene_.surfaces);
     }
 
     /// `ids` are those of the shadings from address `first`.
     void shade(std::span<const std::uint32_t> ids, std::size_t first) {
         shade_.id_count = resolve_.count = std::uint32_t(ids.size());
         resolve_.first = std::uint32_t(first);
-        set(executor_, ids_, ids);
+        std::vector<std::uint32_t> words = scene_.starts;
+        words.insert(words.end(), ids.begin(), ids.end());
+        set(executor_, ids_, words);
         executor_.set_uniforms(kShade, 0, bytes_of(shade_));
         passes_.run(executor_, {kShade, kShade + 1});
         check_loops(executor_, unfinished_, scene_path_);
@@ -93,59 +100,42 @@ private:
     static constexpr int kShade = 0, kResolve = 1;
 
     graph::FrameGraph make_graph(const Room& room) {
-        graph::FrameGraph graph;
-        nodes_ = graph.import_buffer("nodes", room_for(scene_.nodes));
-        blockers_ = graph.import_buffer("blockers", room_for(scene_.blockers));
-        starts_ = graph.import_buffer("starts", room_for(scene_.starts));
-        surfaces_ = graph.import_buffer("surfaces", room_for(scene_.surfaces));
-        materials_ = graph.import_buffer("materials", room_for(scene_.materials.materials));
-        textures_ = graph.import_buffer("textures", room_for(scene_.materials.textures));
-        tangents_ = graph.import_buffer("tangents", room_for(scene_.tangents));
-        lights_ = graph.import_buffer("lights", room_for(scene_.lights));
-        ids_ = graph.import_buffer("ids", {room.ids * sizeof(std::uint32_t)});
+        surfaces_ = graph_.import_buffer("surfaces", room_for(scene_.surfaces));
+        ids_ = graph_.import_buffer("ids", {(scene_.starts.size() + room.ids) * sizeof(std::uint32_t)});
         graph::Pass shade =
-            passes_.pass("visibility.shade", visibility_shade_shader(), group_count(room.ids));
-        const auto light = graph.create_buffer("light", {room.ids * sizeof(vec4)});
+            passes_.pass("visibility.shade",
+                         world_.has_alpha() ? visibility_shade_alpha_shader() : visibility_shade_shader(),
+                         group_count(room.ids));
+        const auto light = graph_.create_buffer("light", {room.ids * sizeof(vec4)});
         shade.uniforms = {{0, bytes_of(shade_)}};
-        const graph::BufferHandle read[] = {nodes_, blockers_, starts_, surfaces_, materials_, lights_, ids_};
-        for (int i = 0; i < int(std::size(read)); ++i) shade.buffers.push_back({read[i], i, Access::read});
-        shade.buffers.push_back({textures_, 8, Access::read});
-        shade.buffers.push_back({tangents_, 10, Access::read});
-        shade.buffers.push_back({light, 7, Access::write});
+        world_.add_to(shade);
+        shade.buffers.push_back({ids_, 2, Access::read});
+        shade.buffers.push_back({surfaces_, 3, Access::read});
+        shade.buffers.push_back({light, 6, Access::write});
         const std::size_t shaded = shade.buffers.size() - 1;
-        const graph::Written written = add_with_loops(graph, std::move(shade));
+        const graph::Written written = add_with_loops(graph_, std::move(shade));
         unfinished_ = written.buffers.back();
 
-        addresses_ = graph.import_buffer("addresses", {room.pixels * room.samples * sizeof(std::uint32_t)});
+        addresses_ = graph_.import_buffer("addresses", {room.pixels * room.samples * sizeof(std::uint32_t)});
         graph::Pass resolve =
             passes_.pass("visibility.resolve", visibility_resolve_shader(), group_count(room.pixels));
         resolve.uniforms = {{0, bytes_of(resolve_)}};
         resolve.buffers = {{addresses_, 0, Access::read},
                            {written.buffers[shaded], 1, Access::read},
-                           {graph.create_buffer("means", {room.pixels * sizeof(vec4)}), 2, Access::write}};
-        means_ = graph.add_pass(std::move(resolve)).buffers.back();
-        graph.keep(means_);
-        return graph;
-    }
-
-    void set_scene() {
-        set(executor_, nodes_, scene_.nodes);
-        set(executor_, blockers_, scene_.blockers);
-        set(executor_, starts_, scene_.starts);
-        set(executor_, surfaces_, scene_.surfaces);
-        set(executor_, materials_, scene_.materials.materials);
-        set(executor_, textures_, scene_.materials.textures);
-        set(executor_, tangents_, scene_.tangents);
-        set(executor_, lights_, scene_.lights);
+                           {graph_.create_buffer("means", {room.pixels * sizeof(vec4)}), 2, Access::write}};
+        means_ = graph_.add_pass(std::move(resolve)).buffers.back();
+        graph_.keep(means_);
+        return std::move(graph_);
     }
 
     Passes& passes_;
-    LightScene scene_;
+    std::string scene_path_;
+    LightSurfaces scene_;
+    graph::FrameGraph graph_;  // until the executor has it
+    WorldBuffers world_;
     ShadeSettings shade_;
     ResolveSettings resolve_;
-    graph::BufferHandle nodes_, blockers_, starts_, surfaces_, materials_, textures_, tangents_, lights_,
-        ids_, addresses_, means_, unfinished_;
-    std::string scene_path_;
+    graph::BufferHandle surfaces_, ids_, addresses_, means_, unfinished_;
     graph::Executor executor_;  // made of all the above
 };
 

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/visibility/light_scene.h"
-#include "framework/visibility/ray_buffers.h"
 #include "framework/visibility/sample_rays.h"
+#include "framework/visibility/world_buffers.h"
 
 namespace aftershade {
-std::string_view visibility_light_samples_shader();  // light_samples.comp
+std::string_view visibility_light_samples_shader();        // light_samples.comp with alpha_off.glsl
+std::string_view visibility_light_samples_alpha_shader();  // and with alpha_on.glsl
 }  // namespace aftershade
 
 namespace aftershade::visibility {
@@ -46,65 +46,50 @@ std::vector<GpuCorners> corners_of(const scene::Scene& scene) {
     return corners;
 }
 
-/// The lights at all moments, those of a moment side by side.
-std::vector<GpuLight> lights_at(const std::vector<scene::World>& moments) {
-    std::vector<GpuLight> lights;
-    for (const scene::World& world : moments)
-        for (const GpuLight& light : gpu_lights(world.scene(), world.state())) lights.push_back(light);
-    return lights;
-}
-
 /// One pass: the light of one sample of each pixel of a band, added to that of the samples before it.
 class LightSamplesGraph {
 public:
     LightSamplesGraph(Passes& passes, const scene::SceneRenderer& renderer, const SampleSettings& settings,
                       std::size_t pixels, std::size_t max_buffer_bytes)
         : passes_(passes),
-          renderer_(renderer),
-          scene_(make_gpu_scene(renderer)),
+          scene_path_(renderer.scene().path.string()),
           settings_(settings),
-          materials_(gpu_materials(renderer.scene(), max_buffer_bytes)),
           corners_(corners_of(renderer.scene())),
-          tangents_(gpu_tangents(renderer.scene(), gpu_sources(renderer.scene()))),
-          rays_(graph_, scene_, pixels),
+          world_(graph_, renderer,
+                 {.light = true,
+                  .moments = scene::SceneRenderer::kMomentsOfSample,
+                  .max_bytes = max_buffer_bytes}),
           executor_(executor_of(passes, make_graph(pixels))) {
-        rays_.set_scene(executor_, scene_);
-        set(executor_, materials_in_, materials_.materials);
-        set(executor_, textures_in_, materials_.textures);
-        set(executor_, tangents_in_, tangents_);
+        world_.set(executor_);
         set(executor_, corners_in_, corners_);
     }
 
     void light(int sample, const std::vector<scene::World>& moments, const std::vector<GpuRay>& rays) {
-        rays_.set_sample(executor_, renderer_, sample, moments, rays, settings_);
-        set(executor_, lights_in_, lights_at(moments));
+        settings_.pixel_count = std::uint32_t(rays.size());
+        settings_.sample_index = std::uint32_t(sample);
+        world_.set_moments(executor_, 0, moments);
+        set(executor_, rays_, rays);
         executor_.set_uniforms(0, 0, bytes_of(settings_));
         passes_.run(executor_);
-        check_loops(executor_, unfinished_, renderer_.scene().path.string());
+        check_loops(executor_, unfinished_, scene_path_);
     }
     /// The sum of the samples' light for each pixel of the band; w: how many of them met something.
     std::vector<vec4> sums() { return values_of<vec4>(executor_, sums_); }
 
 private:
     graph::FrameGraph make_graph(std::size_t pixels) {
-        constexpr std::size_t kMoments = scene::SceneRenderer::kMomentsOfSample;
-        materials_in_ = graph_.import_buffer("materials", room_for(materials_.materials));
-        textures_in_ = graph_.import_buffer("textures", room_for(materials_.textures));
-        tangents_in_ = graph_.import_buffer("tangents", room_for(tangents_));
-        lights_in_ = graph_.import_buffer(
-            "lights", {kMoments * std::max(settings_.light_count, 1u) * sizeof(GpuLight)});
+        rays_ = graph_.import_buffer("rays", {pixels * sizeof(GpuRay)});
         corners_in_ = graph_.import_buffer("corners", room_for(corners_));
-        graph::Pass pass =
-            passes_.pass("visibility.light_samples", visibility_light_samples_shader(), group_count(pixels));
+        graph::Pass pass = passes_.pass(
+            "visibility.light_samples",
+            world_.has_alpha() ? visibility_light_samples_alpha_shader() : visibility_light_samples_shader(),
+            group_count(pixels));
         pass.uniforms = {{0, bytes_of(settings_)}};
-        rays_.add_to(pass);
-        pass.buffers.push_back({materials_in_, 4, Access::read});
-        pass.buffers.push_back({lights_in_, 5, Access::read});
-        pass.buffers.push_back({corners_in_, 6, Access::read});
-        pass.buffers.push_back({textures_in_, 8, Access::read});
-        pass.buffers.push_back({tangents_in_, 10, Access::read});
+        world_.add_to(pass);
+        pass.buffers.push_back({rays_, 2, Access::read});
+        pass.buffers.push_back({corners_in_, 3, Access::read});
         // It also reads what its run for the sample before has left there, which is not of this frame.
-        pass.buffers.push_back({graph_.create_buffer("sums", {pixels * sizeof(vec4)}), 7, Access::write});
+        pass.buffers.push_back({graph_.create_buffer("sums", {pixels * sizeof(vec4)}), 6, Access::write});
         const std::size_t sums = pass.buffers.size() - 1;
         const graph::Written written = add_with_loops(graph_, std::move(pass));
         sums_ = written.buffers[sums];
@@ -114,16 +99,12 @@ private:
     }
 
     Passes& passes_;
-    const scene::SceneRenderer& renderer_;
-    GpuScene scene_;
+    std::string scene_path_;
     SampleSettings settings_;
-    GpuMaterials materials_;
     std::vector<GpuCorners> corners_;
-    std::vector<vec4> tangents_;
     graph::FrameGraph graph_;  // until the executor has it
-    RayBuffers rays_;
-    graph::BufferHandle materials_in_, textures_in_, tangents_in_, lights_in_, corners_in_, sums_,
-        unfinished_;
+    WorldBuffers world_;
+    graph::BufferHandle rays_, corners_in_, sums_, unfinished_;
     graph::Executor executor_;  // made of all the above
 };
 

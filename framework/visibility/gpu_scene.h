@@ -1,4 +1,4 @@
-// A scene's triangles as rays.glsl reads them; for the sources of this folder.
+// A scene's triangles and lights as world.glsl reads them; for the sources of this folder.
 #pragma once
 
 #include <array>
@@ -21,20 +21,14 @@ struct GpuNode {
     glm::vec4 high_items{0};
 };
 
-struct GpuTriangle {
-    glm::vec4 corner{0};
-    glm::vec4 to_second{0};
-    glm::vec4 to_third{0};
-};
-
 struct GpuObject {
     std::uint32_t first_node = 0;
     std::uint32_t node_count = 0;
     std::uint32_t first_triangle = 0;
     std::uint32_t first_surface = 0;
     float opacity = 1;
-    float shadow_opacity = 1;
-    float unused[2] = {};
+    std::uint32_t flags = 0;  ///< 1: casts shadows, 2: has holes, 4: is mixed
+    std::uint32_t unused[2] = {};
 };
 
 /// Where the shading samples of a triangle lie.
@@ -46,25 +40,20 @@ struct GpuGrid {
 
 /// A hierarchy for each mesh, in its own space. It is the same at all times.
 struct GpuScene {
-    std::vector<GpuNode> nodes;
-    std::vector<GpuTriangle> triangles;  ///< as the leaves order them
+    std::vector<glm::vec4> meshes;  ///< two for each node, then three for each triangle, as leaves order them
+    std::uint32_t triangles_at = 0;  ///< where they begin
     std::vector<GpuObject> objects;
 };
-
-/// The items of a leaf have three bits of their word in bvh.glsl, their index 29.
-inline constexpr int kLeafSize = 4;
-std::vector<GpuNode> gpu_nodes(const scene::Bvh& bvh);
-
-/// Throws Error(ErrorKind::usage) for more than 2^20 triangles of all objects.
-void check_triangle_count(const scene::Scene& scene);
 
 /// Each triangle of each object: the object, and its number there.
 std::vector<std::array<std::uint32_t, 2>> gpu_sources(const scene::Scene& scene);
 
-/// Throws as check_triangle_count() does.
+/// Throws Error(ErrorKind::usage) for more than 2^20 triangles of all objects, and for meshes that reach
+/// further than 1e9 m.
 GpuScene make_gpu_scene(const scene::SceneRenderer& renderer);
 
-/// The hierarchy over the objects as they stand at these moments. A leaf's item is an object.
+/// The hierarchy over the objects as they stand at these moments. A leaf's item is an object. Throws
+/// Error(ErrorKind::usage) for objects that reach further than 1e9 m.
 std::vector<GpuNode> make_top(const scene::SceneRenderer& renderer, const std::vector<scene::World>& moments);
 
 /// In the order of gpu_sources().
@@ -72,5 +61,9 @@ std::vector<GpuGrid> make_gpu_grids(const scene::Scene& scene, const scene::Shad
 
 /// object_from_world of all objects at all moments, three rows each.
 std::vector<glm::vec4> make_moments(const std::vector<scene::World>& moments);
+
+/// Adds each light at one moment, as light.glsl has it.
+inline constexpr std::size_t kLightRows = 6;
+void add_lights(std::vector<glm::vec4>& rows, const scene::Scene& scene, const scene::SceneState& now);
 
 }  // namespace aftershade::visibility

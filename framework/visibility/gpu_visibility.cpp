@@ -1,16 +1,18 @@
 #include "framework/visibility/gpu_visibility.h"
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "framework/visibility/bands.h"
 #include "framework/visibility/gpu_scene.h"
-#include "framework/visibility/ray_buffers.h"
 #include "framework/visibility/sample_rays.h"
+#include "framework/visibility/world_buffers.h"
 
 namespace aftershade {
-std::string_view visibility_trace_shader();  // trace.comp
+std::string_view visibility_trace_shader();        // trace.comp with alpha_off.glsl
+std::string_view visibility_trace_alpha_shader();  // and with alpha_on.glsl
 }  // namespace aftershade
 
 namespace aftershade::visibility {
@@ -24,22 +26,25 @@ namespace {
 class TraceGraph {
 public:
     TraceGraph(Passes& passes, const scene::SceneRenderer& renderer, const std::vector<GpuGrid>& grids,
-               const SampleSettings& settings, std::size_t pixels)
+               const SampleSettings& settings, std::size_t pixels, std::size_t max_buffer_bytes)
         : passes_(passes),
-          renderer_(renderer),
-          scene_(make_gpu_scene(renderer)),
+          scene_path_(renderer.scene().path.string()),
           settings_(settings),
-          rays_(graph_, scene_, pixels),
+          world_(graph_, renderer,
+                 {.moments = scene::SceneRenderer::kMomentsOfSample, .max_bytes = max_buffer_bytes}),
           executor_(executor_of(passes, make_graph(grids, pixels))) {
-        rays_.set_scene(executor_, scene_);
+        world_.set(executor_);
         set(executor_, grids_, grids);
     }
 
     void trace(int sample, const std::vector<scene::World>& moments, const std::vector<GpuRay>& rays) {
-        rays_.set_sample(executor_, renderer_, sample, moments, rays, settings_);
+        settings_.pixel_count = std::uint32_t(rays.size());
+        settings_.sample_index = std::uint32_t(sample);
+        world_.set_moments(executor_, 0, moments);
+        set(executor_, rays_, rays);
         executor_.set_uniforms(0, 0, bytes_of(settings_));
         passes_.run(executor_);
-        check_loops(executor_, unfinished_, renderer_.scene().path.string());
+        check_loops(executor_, unfinished_, scene_path_);
     }
     /// Of the band whose samples were traced.
     std::vector<std::uint32_t> ids() {
@@ -50,13 +55,18 @@ public:
 
 private:
     graph::FrameGraph make_graph(const std::vector<GpuGrid>& grids, std::size_t pixels) {
-        graph::Pass trace = passes_.pass("visibility.trace", visibility_trace_shader(), group_count(pixels));
+        graph::Pass trace =
+            passes_.pass("visibility.trace",
+                         world_.has_alpha() ? visibility_trace_alpha_shader() : visibility_trace_shader(),
+                         group_count(pixels));
         trace.uniforms = {{0, bytes_of(settings_)}};
-        rays_.add_to(trace);
+        world_.add_to(trace);
+        rays_ = graph_.import_buffer("rays", {pixels * sizeof(GpuRay)});
+        trace.buffers.push_back({rays_, 2, Access::read});
         grids_ = graph_.import_buffer("grids", room_for(grids));
-        trace.buffers.push_back({grids_, 5, Access::read});
+        trace.buffers.push_back({grids_, 3, Access::read});
         trace.buffers.push_back(
-            {graph_.create_buffer("ids", {pixels * settings_.sample_count * sizeof(std::uint32_t)}), 4,
+            {graph_.create_buffer("ids", {pixels * settings_.sample_count * sizeof(std::uint32_t)}), 6,
              Access::write});
         const std::size_t ids = trace.buffers.size() - 1;
         const graph::Written written = add_with_loops(graph_, std::move(trace));
@@ -67,12 +77,11 @@ private:
     }
 
     Passes& passes_;
-    const scene::SceneRenderer& renderer_;
-    GpuScene scene_;
+    std::string scene_path_;
     SampleSettings settings_;
     graph::FrameGraph graph_;  // until the executor has it
-    RayBuffers rays_;
-    graph::BufferHandle grids_, ids_, unfinished_;
+    WorldBuffers world_;
+    graph::BufferHandle rays_, grids_, ids_, unfinished_;
     graph::Executor executor_;  // made of all the above
 };
 
@@ -88,7 +97,7 @@ std::vector<std::uint32_t> trace_ids(Passes& passes, const scene::SceneRenderer&
     const SampleSettings values = sample_settings(renderer, grids.reference().camera, settings.samples);
     const Bands bands(renderer.width_px(), renderer.height_px(),
                       width * std::max(samples * sizeof(std::uint32_t), sizeof(GpuRay)), 1, max_buffer_bytes);
-    TraceGraph graph(passes, renderer, gpu_grids, values, width * std::size_t(bands.rows));
+    TraceGraph graph(passes, renderer, gpu_grids, values, width * std::size_t(bands.rows), max_buffer_bytes);
     std::vector<std::uint32_t> ids;
     bands.for_each([&](int first, int rows) {
         for (int sample = 0; sample < settings.samples; ++sample) {

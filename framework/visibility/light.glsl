@@ -1,4 +1,4 @@
-// Light at a point, in the words of world_lighting.cpp. What includes this has light_through().
+// Light at a point, in the words of world_lighting.cpp.
 struct Light {
     vec4 position;   // m; w: kind
     vec4 direction;  // w: points of a grid a side that shadows are sought from; 0: no shadows
@@ -7,8 +7,6 @@ struct Light {
     vec4 intensity;  // w: the pattern's period, m
     vec4 axis;       // of the pattern; w: its amplitude
 };
-
-layout(std430, binding = 5) readonly buffer Lights { Light lights[]; };
 
 const float kPi = 3.14159265358979;
 const float kPoint = 0.0, kDirectional = 1.0;  // kinds; 2: area
@@ -24,8 +22,10 @@ struct Point {
     uint seed;              // of its random rays
 };
 
-// The share of light that crosses what stands on a ray before `high`.
-float light_through(vec3 origin, vec3 direction, float high);
+Light light_number(uint index) {
+    uint at = lights_at + 6u * index;
+    return Light(moving[at], moving[at + 1u], moving[at + 2u], moving[at + 3u], moving[at + 4u], moving[at + 5u]);
+}
 
 vec3 off_surface(Point point) {
     vec3 size = abs(point.position);
@@ -61,25 +61,33 @@ float polygon_cosine(Light light, Point point) {
     return abs(sum + edge_cosine(leaves, enters, point.normal)) / 2.0;
 }
 
-// The share of an area light that shines through, by a grid of its points; as World::visible_part().
-float visible_part(Light light, Point point) {
-    int side = int(light.direction.w), count = 0;
-    vec3 from = off_surface(point);
-    float seen = 0.0;
-    for (int i = 0; i < side * side; ++i) {
-        vec2 uv = vec2(float(i % side) + 0.5, float(i / side) + 0.5) / float(side) * 2.0 - 1.0;
-        vec3 to = light.position.xyz + uv.x * light.half_u.xyz + uv.y * light.half_v.xyz;
-        if (dot(to - point.position, point.geometric_normal) <= 0.0) continue;
-        ++count;
-        seen += light_through(from, to - from, 1.0);
-    }
-    if (count > 0) return seen / float(count);
+// The corner that stands highest above the surface.
+vec3 highest_corner(Light light, Point point) {
     vec3 highest = corner_of(light, 0);
     for (int i = 1; i < 4; ++i) {
         vec3 corner = corner_of(light, i);
         if (dot(corner - highest, point.geometric_normal) > 0.0) highest = corner;
     }
-    return light_through(from, highest - from, 1.0);
+    return highest;
+}
+
+// The share of a light that shines through, of an area light by a grid of its points; as World::visible_part(). One place alone calls
+// light_through(), since compilers write it out at each.
+float visible_part(Light light, Point point, vec3 toward) {
+    bool is_far = light.position.w == kDirectional, is_area = light.position.w > kDirectional;
+    int side = is_area ? int(light.direction.w) : 1, count = 0;
+    vec3 from = off_surface(point);
+    float seen = 0.0;
+    for (int i = 0; i < side * side + (count > 0 ? 0 : 1); ++i) {
+        vec2 uv = vec2(float(i % side) + 0.5, float(i / side) + 0.5) / float(side) * 2.0 - 1.0;
+        vec3 to = light.position.xyz + uv.x * light.half_u.xyz + uv.y * light.half_v.xyz;
+        if (!is_area) to = light.position.xyz;
+        else if (i == side * side) to = highest_corner(light, point);
+        else if (dot(to - point.position, point.geometric_normal) <= 0.0) continue;
+        ++count;
+        seen += light_through(from, is_far ? toward : to - from, is_far ? 1e30 : 1.0);
+    }
+    return seen / float(count);
 }
 
 float pattern_at(Light light, vec3 position) {
@@ -121,9 +129,7 @@ void add_light(Light light, Point point, vec3 to_eye, inout vec3 irradiance, ino
     }
     if (received <= 0.0) return;
     if (light.direction.w > 0.0) {
-        vec3 from = off_surface(point);
-        float seen = is_area ? visible_part(light, point)
-                             : light_through(from, is_far ? toward : light.position.xyz - from, is_far ? 1e30 : 1.0);
+        float seen = visible_part(light, point, toward);
         received *= seen;
         highlighted *= seen;
     }
@@ -168,9 +174,9 @@ float visible_ambient(Point point, uint rays) {
 
 // Light from `count` lights, beginning with `first`, and from the ambient light, whose rays are ambient.w.
 vec3 light_at(Point point, vec3 eye, vec4 ambient, uint first, uint count) {
-    vec3 to_eye = normalize(eye - point.position);
+    vec3 way = eye - point.position, to_eye = way == vec3(0.0) ? point.normal : normalize(way);  // as direction_to() of the CPU
     vec3 irradiance = point.finish.ambient * ambient.rgb, reflected = vec3(0.0);
     if (ambient.w > 0.0 && ambient.rgb != vec3(0.0)) irradiance *= visible_ambient(point, uint(ambient.w));
-    for (uint i = first; i < first + count; ++i) add_light(lights[i], point, to_eye, irradiance, reflected);
+    for (uint i = first; i < first + count; ++i) add_light(light_number(i), point, to_eye, irradiance, reflected);
     return point.finish.albedo * irradiance + reflected + point.finish.emission;
 }

@@ -26,7 +26,7 @@ void Passes::run(graph::Executor& executor, graph::PassRange range) {
 }
 
 graph::Written add_with_loops(graph::FrameGraph& graph, graph::Pass pass) {
-    constexpr int kBinding = 9;  // as loops.glsl has it
+    constexpr int kBinding = 7;  // as loops.glsl has it
     const graph::BufferHandle unfinished =
         graph.create_buffer("unfinished", {sizeof(std::uint32_t)}, std::vector<std::uint32_t>{0});
     pass.buffers.push_back({unfinished, kBinding, gpu::Access::read_write});

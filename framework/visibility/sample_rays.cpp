@@ -27,7 +27,6 @@ SampleSettings sample_settings(const scene::SceneRenderer& renderer, const scene
     SampleSettings settings;
     settings.size_px = {renderer.width_px(), renderer.height_px()};
     settings.px_per_tangent = float(renderer.pixels_per_tangent(reference));
-    settings.object_count = std::uint32_t(of.objects.size());
     settings.sample_count = std::uint32_t(samples);
     settings.transparent = of.has_transparency() ? 1 : 0;
     settings.light_count = std::uint32_t(of.lights.size());

@@ -19,21 +19,18 @@ struct GpuRay {
 struct SampleSettings {
     glm::vec2 size_px{0};
     float px_per_tangent = 0;
-    std::uint32_t top_count = 0;
-    std::uint32_t object_count = 0;
     std::uint32_t pixel_count = 0;
     std::uint32_t sample_index = 0;
     std::uint32_t sample_count = 0;
     std::uint32_t transparent = 0;
     std::uint32_t light_count = 0;
-    std::uint32_t unused[2] = {};
     glm::vec4 ambient{0};
     glm::vec4 background{0};
     glm::vec4 camera_right{0};
     glm::vec4 camera_up{0};
 };
 
-/// All but what RayBuffers::set_sample() sets.
+/// All but the sample and its pixels.
 SampleSettings sample_settings(const scene::SceneRenderer& renderer, const scene::CameraState& reference,
                                int samples);
 

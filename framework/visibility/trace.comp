@@ -4,11 +4,11 @@ struct Grid {
     vec4 cells_from_px;  // columns
     vec4 grid;           // low corner, in cells; size, as bits
 };
-layout(std430, binding = 4) writeonly buffer Ids { uint ids[]; };
-layout(std430, binding = 5) readonly buffer Grids { Grid grids[]; };  // of the triangles of all objects
+layout(std430, binding = 6) writeonly buffer Ids { uint ids[]; };
+layout(std430, binding = 3) readonly buffer Grids { Grid grids[]; };  // of the triangles of all objects
 
 uint id_of(Hit hit) {
-    Grid at = grids[surface_of(hit)];
+    Grid at = grids[hit.surface];
     vec3 view = (1.0 - hit.barycentric.x - hit.barycentric.y) * at.view[0].xyz + hit.barycentric.x * at.view[1].xyz +
                 hit.barycentric.y * at.view[2].xyz;
     vec2 px = view.z < 0.0 ? 0.5 * size_px + px_per_tangent * vec2(view.x, -view.y) / -view.z : 0.5 * size_px;
@@ -22,6 +22,6 @@ void main() {
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= pixel_count) return;
     Hit hit = stopped(pixel, rays[pixel].origin.xyz, rays[pixel].direction.xyz, floatBitsToUint(rays[pixel].origin.w));
-    ids[pixel * sample_count + sample_index] = hit.triangle == kNoShading ? kNoShading : id_of(hit);
+    ids[pixel * sample_count + sample_index] = hit.surface == kNoShading ? kNoShading : id_of(hit);
     check_loops();
 }

@@ -188,5 +188,27 @@ TEST(Gltf, LeavesImagesWhatEverTheyHold) {
     EXPECT_EQ(read_bytes(file.text()).triangles.size(), 1u);
 }
 
+TEST(Gltf, HasZerosAndTheValuesOfSparseAccessorsInTheirPlaces) {
+    const std::vector<float> positions = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+    File dense;
+    dense.primitive(fmt::format(R"("POSITION": {})", dense.floats(positions, 3)));
+    const std::vector<glm::dvec3> expected = corners_of(read_bytes(dense.text()));
+    for (const bool has_view : {true, false}) {
+        File file;
+        const int where = file.view(bytes_of(std::vector<std::uint16_t>{1, 2}));
+        const int what = file.view(bytes_of(std::vector<float>{1, 0, 0, 0, 2, 0}));
+        // Other values where the sparse ones come.
+        const int all = file.view(bytes_of(std::vector<float>{0, 0, 0, 7, 7, 7, 8, 8, 8}));
+        const std::string sparse = fmt::format(
+            R"(, "sparse": {{"count": 2, "indices": {{"bufferView": {}, "componentType": 5123}}, "values": {{"bufferView": {}}}}})",
+            where, what);
+        file.primitive(fmt::format(R"("POSITION": {})", file.accessor(all, kFloat, 3, "VEC3", sparse)));
+        std::string text = file.text();
+        const std::string view = fmt::format(R"("bufferView": {}, "componentType": 5126)", all);
+        if (!has_view) text.replace(text.find(view), view.size(), R"("componentType": 5126)");
+        EXPECT_EQ(corners_of(read_bytes(text)), expected) << has_view;
+    }
+}
+
 }  // namespace
 }  // namespace aftershade::scene

@@ -237,7 +237,7 @@ TEST(GltfMaterials, HaveRoughnessInGreenAndMetalInBlue) {
     const TemporaryFolder folder;
     write_text(folder / "model.gltf", textured_quad(material, {.pictures = {png_of({9, 51, 102})}}).text());
     const GltfModel model = read_gltf_model(folder / "model.gltf");
-    const Finish finish = finish_at(model.materials.at(0), {0.5, 0.5}, glm::dmat2(0));
+    const Finish finish = finish_at(model.materials.at(0), {.uv = {0.5, 0.5}});
     EXPECT_NEAR(finish.roughness, 0.9 * 0.2, 1e-12);
     expect_near(finish.albedo, glm::dvec3(0.8, 0.4, 0.2) * (1 - 0.5 * 0.4), 1e-12);
     expect_near(finish.reflectance, glm::mix(glm::dvec3(0.04), glm::dvec3(0.8, 0.4, 0.2), 0.5 * 0.4), 1e-12);

@@ -115,6 +115,21 @@ TEST(Job, RefusesFileNumbersThatNoRangeCanName) {
     EXPECT_NE(faults(scene, job).find("subframes: error: file numbers"), std::string::npos);
 }
 
+TEST(Job, CountsTheLightThatItKeeps) {
+    const Scene scene = scene_of(kBall);
+    Job job;
+    job.captures = false;
+    job.width_px = job.height_px = 4096;
+    job.visibility.emplace();
+    job.visibility->samples = 8;
+    EXPECT_EQ(faults(scene, job), "");
+    job.visibility->keep_shading = true;
+    const std::string text = faults(scene, job);
+    EXPECT_NE(text.find("the limit is 16 GiB (render fewer pixels at once, or choose a lower shading_rate)"),
+              std::string::npos)
+        << text;
+}
+
 TEST(Job, RefusesAFolderWithoutAName) {
     Diagnostics diagnostics;
     check_job(scene_of(kBall), Job{}, diagnostics);

@@ -35,6 +35,7 @@ struct Textured {
     glm::dvec2 uv_low{0}, uv_high{1};
     std::vector<float> normals = {};   ///< three for each corner
     std::vector<float> tangents = {};  ///< four for each corner
+    std::string more_uvs = {};         ///< "mirrored": set 1, with u the other way round; else none
     std::vector<std::string> pictures = {};
 };
 
@@ -50,6 +51,10 @@ inline File textured_quad(const std::string& material, const Textured& textured)
         fmt::format(R"(, "NORMAL": {})", file.floats(textured.normals.empty() ? up : textured.normals, 3));
     if (!textured.tangents.empty())
         attributes += fmt::format(R"(, "TANGENT": {})", file.floats(textured.tangents, 4));
+    if (textured.more_uvs == "mirrored")
+        attributes +=
+            fmt::format(R"(, "TEXCOORD_1": {})",
+                        file.floats({high.x, high.y, low.x, high.y, low.x, low.y, high.x, low.y}, 2));
     file.primitive(attributes, file.indices<std::uint8_t>({0, 1, 2, 0, 2, 3}), kTriangles, 0);
     std::string images = textured.images, textures;
     for (std::size_t i = 0; i < std::max(textured.pictures.size(), std::size_t(1)); ++i) {

@@ -9,8 +9,8 @@
 #include "framework/scene/triangulate.h"
 #include "framework/scene/visibility.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/scene/alpha_file.h"
 #include "tests/scene/scene_text.h"
-#include "tests/scene/textured_file.h"
 
 namespace aftershade::visibility {
 namespace {
@@ -94,6 +94,14 @@ TEST_P(LightOn, WrapsTexturesAndScalesMapsAsTheCpuDoes) {
     }
 }
 
+TEST_P(LightOn, ShinesThroughAlphaAndByFurtherTextureCoordinatesAsTheCpus) {
+    for (const std::string& mode : {scene::test::kBlend, scene::test::kMask}) {
+        const scene::test::TemporaryFolder folder;
+        const scene::Scene scene = scene::test::alpha_scene(folder.path(), mode);
+        EXPECT_LT(other_pixels(pictures(context(), scene, 1, 1)), 0.005) << mode;
+    }
+}
+
 TEST_P(LightOn, RefusesTexturesThatNoBufferHolds) {
     try {
         pictures(context(), scene::shipped_scene("urn"), 4, 1, 4096);
@@ -103,6 +111,23 @@ TEST_P(LightOn, RefusesTexturesThatNoBufferHolds) {
         const std::string text = error.what();
         EXPECT_NE(text.find("urn/scene.json: textures of "), std::string::npos) << text;
         EXPECT_NE(text.find("the limit of visibility by GL is 4096; scale them down"), std::string::npos)
+            << text;
+    }
+}
+
+TEST_P(LightOn, RefusesObjectsWhoseSizeSinglePrecisionDoesNotHold) {
+    const scene::Scene scene =
+        scene::scene_of(R"({ "aftershade": 1, "camera": {}, "materials": { "grey": {} },
+        "objects": [ { "name": "sky", "shape": "sphere", "radius": 1e6, "scale": 1e5, "material": "grey" } ] })");
+    try {
+        pictures(context(), scene, 1, 1, kMaxBufferBytes, {4, 4});
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::usage);
+        const std::string text = error.what();
+        EXPECT_NE(text.find("object 'sky' reaches 100000"), std::string::npos) << text;
+        EXPECT_NE(text.find("m, the limit of visibility by GL is 1000000000; choose visibility_on cpu"),
+                  std::string::npos)
             << text;
     }
 }

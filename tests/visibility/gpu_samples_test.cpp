@@ -6,6 +6,7 @@
 
 #include "framework/scene/triangulate.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/scene/alpha_file.h"
 #include "tests/scene/scene_text.h"
 
 namespace aftershade::visibility {
@@ -59,6 +60,21 @@ TEST_P(SamplesOn, AreLitAsTheCpuLightsThemAtTheirOwnMoments) {
             EXPECT_GT(met, 0u) << id;
             EXPECT_LT(double(met_otherwise), 0.002 * double(met)) << id;
         }
+}
+
+TEST_P(SamplesOn, GoThroughAlphaAsOnTheCpu) {
+    for (const std::string& mode : {scene::test::kBlend, scene::test::kMask}) {
+        const scene::test::TemporaryFolder folder;
+        scene::Scene triangles = scene::triangulated(scene::test::alpha_scene(folder.path(), mode));
+        triangles.ambient_rays = 3;
+        scene::VisibilitySettings settings;
+        settings.visibility = scene::Visibility::supersampled;
+        settings.samples = 4;
+        const scene::LitSamples expected = on_cpu(triangles, 1, settings);
+        const scene::LitSamples found = on_gl(context(), triangles, 1, settings);
+        // Where a sample stops by chance, the last digit of an opacity decides.
+        EXPECT_LT(other_pixels(expected, found), 0.03) << mode;
+    }
 }
 
 TEST_P(SamplesOn, AreTheSameInBands) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <set>
+#include <string_view>
 #include <unordered_set>
 #include <vector>
 
@@ -12,7 +13,17 @@
 #include "framework/visibility/gpu_cache.h"
 #include "framework/visibility/gpu_scene.h"
 #include "tests/gpu/gpu_test.h"
+#include "tests/scene/alpha_file.h"
 #include "tests/scene/scene_text.h"
+
+namespace aftershade {
+std::string_view visibility_trace_shader();
+std::string_view visibility_trace_alpha_shader();
+std::string_view visibility_light_samples_shader();
+std::string_view visibility_light_samples_alpha_shader();
+std::string_view visibility_shade_shader();
+std::string_view visibility_shade_alpha_shader();
+}  // namespace aftershade
 
 namespace aftershade::visibility {
 namespace {
@@ -30,14 +41,44 @@ struct Traced {
 
 constexpr int kWidth_px = 160, kHeight_px = 90;
 
-Traced traced(Passes& passes, const std::string& id, int frame, int samples) {
-    const scene::Scene triangles = scene::triangulated(scene::shipped_scene(id));
+Traced traced(Passes& passes, const scene::Scene& scene, int frame, int samples) {
+    const scene::Scene triangles = scene::triangulated(scene);
     const scene::SceneRenderer renderer(triangles, kWidth_px, kHeight_px, 2);
     const scene::ShadingGrids grids(renderer, frame, {});
     scene::VisibilitySettings settings;
     settings.samples = samples;
     return {scene::trace_ids(renderer, grids, frame, settings),
             trace_ids(passes, renderer, grids, frame, settings), grids.id_count()};
+}
+
+Traced traced(Passes& passes, const std::string& id, int frame, int samples) {
+    return traced(passes, scene::shipped_scene(id), frame, samples);
+}
+
+TEST(VisibilityShaders, NeedNoMoreStorageBlocksThanGlPromises) {
+    constexpr int kPromised = 8;  // GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS of OpenGL 4.5, table 23.66
+    for (const std::string_view shader :
+         {visibility_trace_shader(), visibility_trace_alpha_shader(), visibility_light_samples_shader(),
+          visibility_light_samples_alpha_shader(), visibility_shade_shader(),
+          visibility_shade_alpha_shader()}) {
+        int blocks = 0;
+        for (std::size_t at = shader.find("layout(std430"); at != shader.npos;
+             at = shader.find("layout(std430", at + 1))
+            ++blocks;
+        EXPECT_GE(blocks, 5);
+        EXPECT_LE(blocks, kPromised);
+    }
+}
+
+TEST_P(VisibilityOn, MeetsHolesAndMixedOpacitiesAsTheCpuDoes) {
+    Passes passes(context());
+    for (const std::string& mode : {scene::test::kBlend, scene::test::kMask}) {
+        const scene::test::TemporaryFolder folder;
+        const Traced found = traced(passes, scene::test::alpha_scene(folder.path(), mode), 1, 8);
+        std::size_t other = 0;
+        for (std::size_t i = 0; i < found.on_cpu.size(); ++i) other += found.on_cpu[i] != found.on_gpu[i];
+        EXPECT_LT(double(other) / double(found.on_cpu.size()), 0.003) << mode;
+    }
 }
 
 TEST_P(VisibilityOn, MeetsWhatTheCpuMeetsButAtEdges) {

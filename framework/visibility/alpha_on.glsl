@@ -1,0 +1,1 @@
+const bool kHasAlpha = true;  // of triangles or textures
