@@ -11,6 +11,7 @@
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
 #include "framework/file/exr_file.h"
+#include "framework/run/run_options.h"
 
 namespace CLI {
 class App;
@@ -19,7 +20,7 @@ class Option;
 
 namespace aftershade {
 struct CaptureHeader;
-}
+}  // namespace aftershade
 
 namespace aftershade::cli {
 
@@ -63,5 +64,10 @@ struct FaultyDocuments : Error {
 
 /// Throws FaultyDocuments with every fault collected so far.
 void stop_at_errors(const Diagnostics& diagnostics, bool refuses_report = false);
+
+/// Where the frames are what lies on disk, not what the user named: adds those that are missing in between,
+/// so that `missing` decides on them, and says which they are where that makes them failures.
+void add_missing_frames(const CaptureOptions& options, MissingFrame missing, Sequence& sequence,
+                        Diagnostics& diagnostics);
 
 }  // namespace aftershade::cli

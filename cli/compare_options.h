@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/compare_areas.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/batch/process_codes.h"
@@ -26,6 +25,14 @@ struct ToleranceOptions {
     std::optional<double> limit, relative, ulp, percent, hard, flip, ssim;
     std::optional<std::uint64_t> allowed;
     bool any() const { return limit || relative || ulp || percent || hard || allowed; }
+};
+
+/// --ignore, --area and --layer.
+struct CompareAreaOptions {
+    std::vector<std::string> ignored;  ///< WHERE
+    std::vector<std::string> areas;    ///< WHERE=LIMIT
+    std::vector<std::string> layers;   ///< LAYER=LIMIT
+    std::string objects_from;          ///< a capture; "": the reference
 };
 
 struct CompareOptions {

@@ -1,27 +1,71 @@
-#include "framework/effect/description.h"
-
-#include <fmt/format.h>
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "cli/capture_options.h"
 #include "cli/command_tree.h"
 #include "cli/effect_options.h"
-#include "cli/ocio_names.h"
 #include "cli/profile_report.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
+#include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
+#include "framework/color/color_transform.h"
+#include "framework/effect/description.h"
+#include "framework/effect/manifest/manifest.h"
 #include "framework/scattering/param_scattering.h"
 
 namespace aftershade::cli {
 
 namespace {
+
+// What the user's OpenColorIO config has for the parameters of an effect that takes one.
+
+/// nullopt for effects without such a parameter, and where the config cannot be read, of which it warns.
+std::optional<ColorNames> ocio_names(const EffectManifest& manifest, Diagnostics& diagnostics) {
+    const auto takes_config = [](const ParamSpec& spec) {
+        return is_ocio_file(spec) && spec.file_kind == FileKind::ocio_config;
+    };
+    if (std::ranges::none_of(manifest.params, takes_config)) return std::nullopt;
+    auto read = color_names("");
+    if (auto* names = std::get_if<ColorNames>(&read)) return std::move(*names);
+    diagnostics.warning({"OpenColorIO"}, std::get<ColorFault>(read).text);
+    return std::nullopt;
+}
+
+/// "" without names.
+std::string ocio_names_text(const std::optional<ColorNames>& names) {
+    if (!names) return "";
+    std::string text = "\nNames in " + names->config + " (--ocio names another config):\n";
+    for (const auto& [display, views] : names->views)
+        text += "  display '" + display + "' has the views " + list_of_names(views, "and") + "\n";
+    if (!names->looks.empty()) text += "  looks: " + list_of_names(names->looks, "and") + "\n";
+    text += "  spaces: " + list_of_names(names->spaces, "and") + "\n";
+    for (const auto& [role, space] : names->roles) text += "  role " + role + " is '" + space + "'\n";
+    return printable_lines(text);
+}
+
+/// The description with a member "ocio".
+std::string with_ocio_names(const std::string& description, const std::optional<ColorNames>& names) {
+    if (!names) return description;
+    auto json = nlohmann::ordered_json::parse(description);
+    auto& member = json["ocio"];
+    member["config"] = names->config;
+    for (const auto& [display, views] : names->views) member["displays"][display] = views;
+    member["looks"] = names->looks;
+    member["spaces"] = names->spaces;
+    for (const auto& [role, space] : names->roles) member["roles"][role] = space;
+    return json.dump(2);
+}
 
 struct DescribeOptions {
     std::string what;

@@ -9,13 +9,7 @@
 
 #include "cli/compare_options.h"
 #include "cli/exit_code.h"
-#include "cli/golden_apply_verb.h"
-#include "cli/golden_approval.h"
-#include "cli/golden_comment_verb.h"
-#include "cli/golden_explain_verb.h"
-#include "cli/golden_init_verb.h"
 #include "cli/golden_options.h"
-#include "cli/golden_serve_verb.h"
 #include "cli/interrupt.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"

@@ -1,5 +1,3 @@
-#include "cli/golden_apply_verb.h"
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,7 +9,6 @@
 #include <vector>
 
 #include "cli/compare_options.h"
-#include "cli/golden_approval.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "framework/base/atomic_file.h"

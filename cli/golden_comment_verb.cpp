@@ -1,11 +1,10 @@
-#include "cli/golden_comment_verb.h"
-
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include "cli/compare_options.h"
+#include "cli/golden_options.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/input_files.h"
 #include "framework/batch/golden_comment.h"

@@ -1,5 +1,3 @@
-#include "cli/golden_explain_verb.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>

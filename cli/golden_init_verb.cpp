@@ -1,5 +1,3 @@
-#include "cli/golden_init_verb.h"
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <array>

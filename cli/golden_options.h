@@ -1,7 +1,8 @@
-// The words of `aftershade golden`.
+// The words of `aftershade golden`, and its verbs that have a file of their own.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }  // namespace CLI
 
 namespace aftershade::cli {
@@ -60,5 +62,24 @@ std::string line_of_git(const std::filesystem::path& folder, const std::vector<s
 
 /// --approver, else git's user.name in the folder, else $USER; "" where none of them is set.
 std::string approver_of(const GoldenOptions& options, const std::filesystem::path& folder);
+
+/// `aftershade golden approve` of the suite, as its sidecars name it, whichever command approves.
+std::string approve_command(const GoldenSetup& setup);
+
+/// Cases that keep their goldens and sums on stderr, paths of new files on stdout.
+void print_approval(const GoldenApproval& approval);
+
+void add_approver_option(CLI::App& app, GoldenOptions& options);
+void add_any_renderer_option(CLI::App& app, GoldenOptions& options);
+CLI::Option* add_page_limit(CLI::App& app, GoldenOptions& options);
+
+/// Each adds a verb to `golden` and returns what that verb does: decisions of a file or of commits, what a
+/// pull request shows of a report, why a case differs, a suite of one case whose tolerance is measured, and
+/// the report of a suite as a page to review it with.
+std::function<ExitCode()> add_golden_apply(CLI::App& golden);
+std::function<ExitCode()> add_golden_comment(CLI::App& golden);
+std::function<ExitCode()> add_golden_explain(CLI::App& golden);
+std::function<ExitCode()> add_golden_init(CLI::App& golden);
+std::function<ExitCode()> add_golden_serve(CLI::App& golden);
 
 }  // namespace aftershade::cli

@@ -1,5 +1,3 @@
-#include "cli/golden_serve_verb.h"
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -10,7 +8,6 @@
 #include <utility>
 
 #include "cli/compare_options.h"
-#include "cli/golden_approval.h"
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "framework/base/error.h"

@@ -1,7 +1,8 @@
 #include "cli/run.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -10,25 +11,26 @@
 #include <thread>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
+#include "cli/batch_report.h"
 #include "cli/bound_look.h"
-#include "cli/early_report.h"
+#include "cli/capture_options.h"
 #include "cli/exit_code.h"
-#include "cli/frame_gaps.h"
 #include "cli/gl_options.h"
 #include "cli/graph_file.h"
 #include "cli/interrupt.h"
 #include "cli/run_arguments.h"
 #include "cli/run_continuation.h"
-#include "cli/run_inputs.h"
 #include "cli/run_session.h"
 #include "cli/run_workers.h"
 #include "cli/stream_options.h"
 #include "cli/verbs.h"
-#include "cli/video_output.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/cores.h"
 #include "framework/base/data_path.h"
 #include "framework/base/text.h"
+#include "framework/batch/process_codes.h"
 #include "framework/capture/frame_range.h"
 #include "framework/file/frame_stream.h"
 #include "framework/look/pixel_shape.h"
@@ -38,6 +40,43 @@
 namespace aftershade::cli {
 
 namespace {
+
+// The file of --report while a run has not come as far as to write it.
+
+bool begins_frames(const RunArguments& options) {
+    return !options.jobs.report.empty() && !options.explain && !options.stream.print_ffmpeg &&
+           !options.resume.dry_run;
+}
+
+bool is_report(const std::filesystem::path& path) {
+    constexpr std::size_t kHead_bytes = 64;
+    std::string head(kHead_bytes, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), std::streamsize(head.size()));
+    return head.starts_with('{') && head.find("\"aftershade_report\"") != std::string::npos;
+}
+
+/// Removes the report of an earlier run, which would pass for the report of this one. Other files stay: the
+/// checks of the outputs refuse them.
+void remove_old_report(const RunArguments& options) {
+    std::error_code failure;
+    if (begins_frames(options) && std::filesystem::is_regular_file(options.jobs.report, failure) &&
+        is_report(options.jobs.report))
+        std::filesystem::remove(options.jobs.report, failure);
+}
+
+/// A report without frames, of a run that ended before its first one; keeps a file that is there.
+void write_early_report(const RunArguments& options, ExitCode code, const std::string& message) {
+    std::error_code failure;
+    if (!begins_frames(options) || std::filesystem::exists(options.jobs.report, failure)) return;
+    try {
+        write_text_file(options.jobs.report,
+                        report_json({options.look, options.capture.capture, {}, 0, code, {}, message}));
+    } catch (const Error& error) {
+        if (code == ExitCode::done) throw;
+        std::cerr << printable_lines(error.what()) << "\n";
+    }
+}
 
 /// Documents of the profiles that a frame may be read by: of the one that was chosen, else of all.
 std::vector<std::filesystem::path> documents_of(const std::vector<Profile>& profiles,

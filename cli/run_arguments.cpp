@@ -9,7 +9,7 @@
 
 #include "cli/effect_options.h"
 #include "cli/gl_options.h"
-#include "cli/video_output.h"
+#include "cli/stream_options.h"
 #include "framework/document/units.h"
 #include "framework/file/frame_stream.h"
 #include "framework/render/draw_with.h"

@@ -1,19 +1,23 @@
 #include "cli/run_session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <set>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "cli/batch_report.h"
 #include "cli/command_line.h"
 #include "cli/exit_code.h"
 #include "cli/gl_options.h"
 #include "cli/graph_file.h"
+#include "cli/plot.h"
 #include "cli/run_continuation.h"
-#include "cli/telemetry_plot.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/data_path.h"
 #include "framework/base/error.h"
@@ -21,11 +25,64 @@
 #include "framework/base/text.h"
 #include "framework/gpu/device.h"
 #include "framework/gpu/timer.h"
+#include "framework/render/telemetry.h"
 #include "framework/render/trace.h"
 
 namespace aftershade::cli {
 
 namespace {
+
+// Telemetry of a sequence as line charts.
+
+/// From 0, or from below it where values are, to a little above the largest.
+std::array<double, 2> range_of(const std::vector<PlotLine>& lines) {
+    double low = 0, high = 0;
+    for (const PlotLine& line : lines)
+        for (const auto& [x, y] : line.points) {
+            low = std::min(low, y);
+            high = std::max(high, y);
+        }
+    return {low, high > low ? high + 0.05 * (high - low) : low + 1};
+}
+
+PlotPanel panel_of(std::string title, std::array<double, 2> frames, std::vector<PlotLine> lines) {
+    PlotPanel panel{std::move(title), "frame", frames, range_of(lines), false, {}};
+    panel.lines = std::move(lines);
+    return panel;
+}
+
+/// SVG: a panel for each statistic of each step, its mean and largest over the frames, and one for the time
+/// of all passes. Frames without a statistic leave a gap.
+std::string telemetry_plot(const std::vector<FrameTelemetry>& frames, const std::string& title) {
+    std::array<double, 2> range{0, 1};
+    if (!frames.empty()) range = {double(frames.front().frame), double(frames.back().frame)};
+    if (range[0] == range[1]) ++range[1];
+    std::set<std::pair<std::string, std::string>> names;
+    for (const FrameTelemetry& frame : frames)
+        for (const auto& [step, statistics] : frame.steps)
+            for (const auto& [name, statistic] : statistics) names.emplace(step, name);
+    std::vector<PlotPanel> panels;
+    for (const auto& [step, name] : names) {
+        PlotLine mean{"mean", {}}, most{"largest", {}};
+        for (const FrameTelemetry& frame : frames) {
+            const auto found = frame.steps.find(step);
+            if (found == frame.steps.end() || !found->second.contains(name)) continue;
+            const Statistic& statistic = found->second.at(name);
+            if (statistic.count == 0) continue;
+            mean.points.push_back({double(frame.frame), statistic.mean});
+            most.points.push_back({double(frame.frame), statistic.max});
+        }
+        panels.push_back(panel_of(step + "." + name, range, {mean, most}));
+    }
+    PlotLine time{"sum", {}};
+    for (const FrameTelemetry& frame : frames) {
+        double sum = 0;
+        for (const graph::PassTime& pass : frame.passes) sum += pass.milliseconds;
+        time.points.push_back({double(frame.frame), sum});
+    }
+    panels.push_back(panel_of("all passes, ms", range, {time}));
+    return plot_svg("Telemetry of " + title, "Mean and largest over the texels that count.", panels);
+}
 
 /// What is written once, after the frames.
 void write_extras(const RunArguments& arguments, const RunReport& report) {

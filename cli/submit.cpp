@@ -9,11 +9,10 @@
 #include <optional>
 
 #include "cli/bound_look.h"
+#include "cli/capture_options.h"
 #include "cli/command_line.h"
-#include "cli/frame_gaps.h"
 #include "cli/job_options.h"
 #include "cli/run_arguments.h"
-#include "cli/run_inputs.h"
 #include "cli/run_workers.h"
 #include "cli/submit_options.h"
 #include "cli/verbs.h"
