@@ -1,7 +1,16 @@
 #include "framework/serve/drawing_process.h"
 
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
 #include <charconv>
+#include <cstddef>
+#include <optional>
+#include <string_view>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 namespace aftershade::serve {
 
@@ -52,6 +61,117 @@ Response DrawingProcess::draw(const DrawRequest& request) {
     if (send_request(socket_.get(), request))
         if (auto answer = receive_answer(socket_.get())) return std::move(*answer);
     throw end();
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool send_bytes(int socket, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t sent = ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        if (sent < 0 && errno != EINTR) return false;
+        if (sent > 0) bytes.remove_prefix(std::size_t(sent));
+    }
+    return true;
+}
+
+bool receive_bytes(int socket, char* bytes, std::size_t size) {
+    while (size > 0) {
+        const ssize_t got = ::recv(socket, bytes, size, MSG_WAITALL);
+        if (got == 0 || (got < 0 && errno != EINTR)) return false;
+        if (got > 0) {
+            bytes += got;
+            size -= std::size_t(got);
+        }
+    }
+    return true;
+}
+
+/// A head that says what the body is, and the body, each behind its size.
+bool send_message(int socket, const Json& head, std::string_view body) {
+    // CBOR (RFC 8949), because a look's text need not be UTF-8.
+    std::string bytes;
+    Json::to_cbor(head, bytes);
+    const std::array<std::uint64_t, 2> sizes = {bytes.size(), body.size()};
+    bytes.insert(0, reinterpret_cast<const char*>(sizes.data()), sizeof sizes);
+    return send_bytes(socket, bytes) && send_bytes(socket, body);
+}
+
+/// nullopt too where the other process was damaged so far that it sends what no message is.
+std::optional<Json> receive_message(int socket, std::string& body) {
+    constexpr std::uint64_t kMaxHeadBytes = 16 << 20, kMaxBodyBytes = std::uint64_t(1) << 30;
+    std::array<std::uint64_t, 2> sizes{};
+    if (!receive_bytes(socket, reinterpret_cast<char*>(sizes.data()), sizeof sizes)) return std::nullopt;
+    if (sizes[0] > kMaxHeadBytes || sizes[1] > kMaxBodyBytes) return std::nullopt;
+    std::string head(sizes[0], '\0');
+    body.resize(sizes[1]);
+    if (!receive_bytes(socket, head.data(), head.size())) return std::nullopt;
+    if (!receive_bytes(socket, body.data(), body.size())) return std::nullopt;
+    Json json = Json::from_cbor(head, true, false);
+    if (!json.is_object()) return std::nullopt;
+    return std::make_optional(std::move(json));
+}
+
+}  // namespace
+
+bool send_request(int socket, const DrawRequest& request) {
+    return send_message(socket,
+                        {{"kind", int(request.kind)},
+                         {"capture", request.capture},
+                         {"files", request.files},
+                         {"revision", request.revision},
+                         {"effects_revision", request.effects_revision},
+                         {"frame", request.frame},
+                         {"scale", request.scale},
+                         {"view", request.view},
+                         {"exposure_ev", request.exposure_ev},
+                         {"is_file", request.is_file},
+                         {"continues", request.continues},
+                         {"x", request.x},
+                         {"y", request.y},
+                         {"truth", request.truth}},
+                        request.text);
+}
+
+std::optional<DrawRequest> receive_request(int socket) {
+    DrawRequest request;
+    const auto json = receive_message(socket, request.text);
+    if (!json) return std::nullopt;
+    request.kind = DrawRequest::Kind(json->at("kind").get<int>());
+    json->at("capture").get_to(request.capture);
+    json->at("files").get_to(request.files);
+    json->at("revision").get_to(request.revision);
+    json->at("effects_revision").get_to(request.effects_revision);
+    json->at("frame").get_to(request.frame);
+    json->at("scale").get_to(request.scale);
+    json->at("view").get_to(request.view);
+    json->at("exposure_ev").get_to(request.exposure_ev);
+    json->at("is_file").get_to(request.is_file);
+    json->at("continues").get_to(request.continues);
+    json->at("x").get_to(request.x);
+    json->at("y").get_to(request.y);
+    json->at("truth").get_to(request.truth);
+    return request;
+}
+
+bool send_answer(int socket, const Response& answer) {
+    return send_message(
+        socket, {{"status", answer.status}, {"type", answer.type}, {"headers", answer.headers}}, answer.body);
+}
+
+std::optional<Response> receive_answer(int socket) {
+    Response answer;
+    const auto json = receive_message(socket, answer.body);
+    if (!json) return std::nullopt;
+    try {
+        json->at("status").get_to(answer.status);
+        json->at("type").get_to(answer.type);
+        json->at("headers").get_to(answer.headers);
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
+    return answer;
 }
 
 }  // namespace aftershade::serve
