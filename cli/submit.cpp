@@ -284,8 +284,8 @@ void write_job(const FarmJob& job, const FarmFiles& files) {
 
 std::string division_text(const SubmitArguments& options, const JobFrames& run, const FarmJob& job) {
     const int frames = int(run.frames.size()), tasks = job.tasks();
-    std::string text = fmt::format("{} {} in {} {} of about {}", frames, frames == 1 ? "frame" : "frames",
-                                   tasks, tasks == 1 ? "task" : "tasks", (frames + tasks - 1) / tasks);
+    std::string text = fmt::format("{} in {} of about {}", counted(std::size_t(frames), "frame"),
+                                   counted(std::size_t(tasks), "task"), (frames + tasks - 1) / tasks);
     if (options.tasks == 0 && options.frames_per_task == 0)
         text +=
             fmt::format(" (at least {}, and {} times the warm-up; choose with --tasks or --frames-per-task)",
@@ -294,8 +294,8 @@ std::string division_text(const SubmitArguments& options, const JobFrames& run, 
         text += fmt::format("; each renders up to {} frames before its own to warm history up",
                             run.warmup_frames);
     if (job.history == FarmHistory::exact)
-        text += fmt::format("; exact history: {} {} of tasks, each task after the one before it",
-                            job.rows.size(), job.rows.size() == 1 ? "row" : "rows");
+        text += fmt::format("; exact history: {} of tasks, each task after the one before it",
+                            counted(job.rows.size(), "row"));
     return text + "\n";
 }
 

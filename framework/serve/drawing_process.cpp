@@ -65,7 +65,7 @@ Response DrawingProcess::draw(const DrawRequest& request) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Message = nlohmann::json;
 
 bool send_bytes(int socket, std::string_view bytes) {
     while (!bytes.empty()) {
@@ -89,17 +89,17 @@ bool receive_bytes(int socket, char* bytes, std::size_t size) {
 }
 
 /// A head that says what the body is, and the body, each behind its size.
-bool send_message(int socket, const Json& head, std::string_view body) {
+bool send_message(int socket, const Message& head, std::string_view body) {
     // CBOR (RFC 8949), because a look's text need not be UTF-8.
     std::string bytes;
-    Json::to_cbor(head, bytes);
+    Message::to_cbor(head, bytes);
     const std::array<std::uint64_t, 2> sizes = {bytes.size(), body.size()};
     bytes.insert(0, reinterpret_cast<const char*>(sizes.data()), sizeof sizes);
     return send_bytes(socket, bytes) && send_bytes(socket, body);
 }
 
 /// nullopt too where the other process was damaged so far that it sends what no message is.
-std::optional<Json> receive_message(int socket, std::string& body) {
+std::optional<Message> receive_message(int socket, std::string& body) {
     constexpr std::uint64_t kMaxHeadBytes = 16 << 20, kMaxBodyBytes = std::uint64_t(1) << 30;
     std::array<std::uint64_t, 2> sizes{};
     if (!receive_bytes(socket, reinterpret_cast<char*>(sizes.data()), sizeof sizes)) return std::nullopt;
@@ -108,56 +108,32 @@ std::optional<Json> receive_message(int socket, std::string& body) {
     body.resize(sizes[1]);
     if (!receive_bytes(socket, head.data(), head.size())) return std::nullopt;
     if (!receive_bytes(socket, body.data(), body.size())) return std::nullopt;
-    Json json = Json::from_cbor(head, true, false);
+    Message json = Message::from_cbor(head, true, false);
     if (!json.is_object()) return std::nullopt;
     return std::make_optional(std::move(json));
 }
 
 }  // namespace
 
+// Without what goes as the body.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DrawRequest, kind, capture, files, revision, effects_revision, frame,
+                                   scale, view, exposure_ev, is_file, continues, x, y, truth)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Response, status, type, headers)
+
 bool send_request(int socket, const DrawRequest& request) {
-    return send_message(socket,
-                        {{"kind", int(request.kind)},
-                         {"capture", request.capture},
-                         {"files", request.files},
-                         {"revision", request.revision},
-                         {"effects_revision", request.effects_revision},
-                         {"frame", request.frame},
-                         {"scale", request.scale},
-                         {"view", request.view},
-                         {"exposure_ev", request.exposure_ev},
-                         {"is_file", request.is_file},
-                         {"continues", request.continues},
-                         {"x", request.x},
-                         {"y", request.y},
-                         {"truth", request.truth}},
-                        request.text);
+    return send_message(socket, request, request.text);
 }
 
 std::optional<DrawRequest> receive_request(int socket) {
     DrawRequest request;
     const auto json = receive_message(socket, request.text);
     if (!json) return std::nullopt;
-    request.kind = DrawRequest::Kind(json->at("kind").get<int>());
-    json->at("capture").get_to(request.capture);
-    json->at("files").get_to(request.files);
-    json->at("revision").get_to(request.revision);
-    json->at("effects_revision").get_to(request.effects_revision);
-    json->at("frame").get_to(request.frame);
-    json->at("scale").get_to(request.scale);
-    json->at("view").get_to(request.view);
-    json->at("exposure_ev").get_to(request.exposure_ev);
-    json->at("is_file").get_to(request.is_file);
-    json->at("continues").get_to(request.continues);
-    json->at("x").get_to(request.x);
-    json->at("y").get_to(request.y);
-    json->at("truth").get_to(request.truth);
+    json->get_to(request);
     return request;
 }
 
 bool send_answer(int socket, const Response& answer) {
-    return send_message(
-        socket, {{"status", answer.status}, {"type", answer.type}, {"headers", answer.headers}}, answer.body);
+    return send_message(socket, answer, answer.body);
 }
 
 std::optional<Response> receive_answer(int socket) {
@@ -165,10 +141,8 @@ std::optional<Response> receive_answer(int socket) {
     const auto json = receive_message(socket, answer.body);
     if (!json) return std::nullopt;
     try {
-        json->at("status").get_to(answer.status);
-        json->at("type").get_to(answer.type);
-        json->at("headers").get_to(answer.headers);
-    } catch (const Json::exception&) {
+        json->get_to(answer);
+    } catch (const Message::exception&) {
         return std::nullopt;
     }
     return answer;
