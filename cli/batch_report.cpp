@@ -78,8 +78,7 @@ std::string report_json(const BatchSummary& summary) {
 std::string failures_text(const std::vector<FrameEvent>& frames) {
     const int failed = count_outcome(frames, "failed");
     if (failed == 0) return "";
-    std::string text =
-        fmt::format("{} of {} {} failed:\n", failed, frames.size(), frames.size() == 1 ? "frame" : "frames");
+    std::string text = fmt::format("{} of {} failed:\n", failed, counted(frames.size(), "frame"));
     for (const FrameEvent& event : frames)
         if (event.outcome == "failed")
             text += fmt::format("  frame {}: {}\n", event.frame, printable(event.message));

@@ -12,7 +12,7 @@
 #include "framework/effect/registry.h"
 #include "framework/look/look.h"
 #include "framework/look/pipeline.h"
-#include "framework/run/output_options.h"
+#include "framework/run/run_options.h"
 
 namespace aftershade::cli {
 

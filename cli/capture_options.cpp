@@ -135,8 +135,7 @@ void stop_at_errors(const Diagnostics& diagnostics, bool refuses_report) {
     diagnostics.print(std::cerr);
     std::ostringstream faults;
     diagnostics.print(faults);
-    throw FaultyDocuments(std::to_string(diagnostics.error_count()) +
-                              (diagnostics.error_count() == 1 ? " error" : " errors") + "; nothing was run",
+    throw FaultyDocuments(counted(std::size_t(diagnostics.error_count()), "error") + "; nothing was run",
                           faults.str(), refuses_report);
 }
 

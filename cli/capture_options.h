@@ -6,17 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "cli/cli11.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/sequence.h"
 #include "framework/file/exr_file.h"
 #include "framework/run/run_options.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace aftershade {
 struct CaptureHeader;

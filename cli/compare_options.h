@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/cli11.h"
 #include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/batch/process_codes.h"
 #include "framework/compare/compare_files.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

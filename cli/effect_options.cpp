@@ -7,7 +7,6 @@
 #include "framework/base/data_path.h"
 #include "framework/base/path_bounds.h"
 #include "framework/color/color_request.h"
-#include "framework/color/config_variable.h"
 
 namespace aftershade::cli {
 

@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/cli11.h"
 #include "framework/base/diagnostics.h"
 #include "framework/effect/registry.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

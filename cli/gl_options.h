@@ -4,11 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "cli/cli11.h"
 #include "framework/gpu/context.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

@@ -6,15 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/cli11.h"
 #include "cli/exit_code.h"
 #include "cli/gl_options.h"
 #include "framework/batch/golden_approve.h"
 #include "framework/batch/golden_report.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

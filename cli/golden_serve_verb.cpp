@@ -15,7 +15,7 @@
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
 #include "framework/batch/golden_apply.h"
-#include "framework/batch/report_file.h"
+#include "framework/batch/report_page.h"
 #include "framework/review/review_server.h"
 
 namespace aftershade::cli {

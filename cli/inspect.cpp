@@ -19,10 +19,9 @@
 #include "framework/capture/sample_means.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
+#include "framework/inspect/channel_statistics.h"
 #include "framework/inspect/contact_sheet.h"
 #include "framework/inspect/depth_kind.h"
-#include "framework/inspect/frame_sheet.h"
-#include "framework/inspect/pixel_samples.h"
 #include "framework/inspect/role_faults.h"
 
 namespace aftershade::cli {

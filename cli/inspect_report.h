@@ -12,7 +12,6 @@
 #include "framework/capture/capture.h"
 #include "framework/file/exr_file.h"
 #include "framework/inspect/channel_statistics.h"
-#include "framework/inspect/pixel_samples.h"
 
 namespace aftershade::cli {
 

@@ -9,7 +9,7 @@
 #include "framework/file/png_file.h"
 #include "framework/image/display.h"
 #include "framework/image/role.h"
-#include "framework/inspect/frame_sheet.h"
+#include "framework/inspect/contact_sheet.h"
 #include "framework/look/pipeline.h"
 
 namespace aftershade::cli {

@@ -6,14 +6,11 @@
 #include <optional>
 #include <string>
 
+#include "cli/cli11.h"
 #include "framework/base/diagnostics.h"
 #include "framework/batch/job_plan.h"
 #include "framework/capture/sequence.h"
 #include "framework/look/pipeline.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

@@ -1,10 +1,7 @@
 // Numbers of the command line.
 #pragma once
 
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
+#include "cli/cli11.h"
 
 namespace aftershade::cli {
 

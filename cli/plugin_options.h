@@ -8,16 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "cli/cli11.h"
 #include "framework/base/error.h"
 #include "framework/base/status.h"
 #include "framework/batch/process_codes.h"
 #include "framework/batch/watchdog.h"
 #include "framework/effect/native/native_library.h"
 #include "framework/effect/native/native_process.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

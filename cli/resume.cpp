@@ -14,14 +14,11 @@ namespace aftershade::cli {
 
 namespace {
 
-std::string frames_text(int count) {
-    return std::to_string(count) + (count == 1 ? " frame" : " frames");
-}
-
 std::string summary_of(const ResumableRun& run) {
     const int writes = run.count(FrameAction::write), renders = run.count(FrameAction::render);
-    std::string text = fmt::format("{}: {} current, {} to render", frames_text(run.frame_count()),
-                                   run.frame_count() - writes, writes);
+    std::string text =
+        fmt::format("{}: {} current, {} to render", counted(std::size_t(run.frame_count()), "frame"),
+                    run.frame_count() - writes, writes);
     if (renders > 0)
         text += fmt::format("; {} of the current ones rendered again, but not written, for {}", renders,
                             "the frames after them");

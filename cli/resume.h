@@ -5,13 +5,10 @@
 #include <functional>
 #include <string>
 
+#include "cli/cli11.h"
 #include "framework/base/error.h"
 #include "framework/batch/process_codes.h"
 #include "framework/run/resumable_run.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

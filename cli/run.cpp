@@ -1,5 +1,3 @@
-#include "cli/run.h"
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/capture_options.h"
+#include "cli/cli11.h"
 #include "cli/gl_options.h"
 #include "cli/job_options.h"
 #include "cli/plugin_options.h"
@@ -14,12 +15,7 @@
 #include "framework/base/diagnostics.h"
 #include "framework/look/look.h"
 #include "framework/look/pipeline.h"
-#include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

@@ -62,9 +62,9 @@ public:
         const int current = count_outcome(report.frames, "current");
         if (current > 0)
             fmt::print(stderr, "{} {} current\n", current, current == 1 ? "frame was" : "frames were");
-        fmt::print(stderr, "{} of {} frames in {:.2f} s by {} {}; {:.2f} frames/s{}\n", done, frame_count_,
-                   seconds, workers, workers == 1 ? "worker" : "workers",
-                   seconds > 0 ? double(done) / seconds : 0.0, fallback_text(fault));
+        fmt::print(stderr, "{} of {} frames in {:.2f} s by {}; {:.2f} frames/s{}\n", done, frame_count_,
+                   seconds, counted(workers, "worker"), seconds > 0 ? double(done) / seconds : 0.0,
+                   fallback_text(fault));
     }
 
 private:

@@ -12,7 +12,7 @@
 
 #include "cli/command_line.h"
 #include "cli/plugin_options.h"
-#include "cli/run.h"
+#include "cli/run_session.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/path_bounds.h"
 #include "framework/base/text.h"

@@ -6,17 +6,13 @@
 #include <optional>
 #include <string>
 
+#include "cli/cli11.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/diagnostics.h"
 #include "framework/capture/capture.h"
 #include "framework/file/frame_stream.h"
 #include "framework/look/pipeline.h"
-#include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

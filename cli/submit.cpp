@@ -1,22 +1,27 @@
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/bound_look.h"
 #include "cli/capture_options.h"
 #include "cli/command_line.h"
 #include "cli/job_options.h"
+#include "cli/number_options.h"
 #include "cli/run_arguments.h"
 #include "cli/run_workers.h"
-#include "cli/submit_options.h"
 #include "cli/verbs.h"
 #include "framework/base/atomic_file.h"
+#include "framework/base/diagnostics.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
 #include "framework/batch/farm_files.h"
@@ -27,6 +32,134 @@ namespace aftershade::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The words of `aftershade submit`.
+
+struct SubmitArguments {
+    std::string farm;
+    std::string look, capture;
+    std::vector<std::string> outputs;
+    std::vector<std::string> run_options;  ///< behind "--"
+    int tasks = 0;                         ///< 0: by frames_per_task
+    int frames_per_task = 0;               ///< 0: by the look
+    std::string history = "auto";
+    std::string folder = "aftershade-job";
+    std::string name;     ///< "" for one after the look
+    std::string program;  ///< "" for this one, or the image's
+    int cpus = 1;
+    std::uint64_t memory_bytes = 0;
+    int minutes = 0;
+    int retries = 2;
+    std::string image, volume_claim, mount;
+};
+
+constexpr int kMostTasks = 1'000'000;  // as many frames as a sequence may have
+
+void add_division_options(CLI::App& app, SubmitArguments& options) {
+    auto* tasks = app.add_option("--tasks", options.tasks, "Number of tasks to divide the frames among")
+                      ->check(CLI::Range(1, kMostTasks));
+    app.add_option("--frames-per-task", options.frames_per_task,
+                   "Frames per task (default: 10, or 4 times the warm-up if that is more)")
+        ->check(CLI::Range(1, kMostTasks))
+        ->excludes(tasks);
+    app.add_option(
+           "--history", options.history,
+           "History of a task: exact (tasks run in turn and pass it on), warmup (a task first renders a few "
+           "earlier frames), none, or auto (warmup if the look has history)")
+        ->check(CLI::IsMember({"auto", "exact", "warmup", "none"}))
+        ->capture_default_str();
+}
+
+void add_resource_options(CLI::App& app, SubmitArguments& options) {
+    app.add_option("--cpus", options.cpus, "CPU cores per task")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    takes_bytes(app.add_option("--memory", options.memory_bytes,
+                               "Memory per task, such as 4GB (default: the farm's)"));
+    app.add_option("--time", options.minutes, "Time limit per task, in minutes (default: the farm's)")
+        ->check(CLI::Range(1, 1'000'000));
+    app.add_option("--retries", options.retries, "How often to retry a failed task")
+        ->check(CLI::Range(0, 100))
+        ->capture_default_str();
+    app.add_option("--program", options.program,
+                   "The aftershade program that tasks run (default: this one; in a container: aftershade)");
+    app.add_option("--image", options.image, "kubernetes: the container image");
+    app.add_option("--volume-claim", options.volume_claim,
+                   "kubernetes: the PersistentVolumeClaim of the volume with the files");
+    app.add_option("--mount", options.mount,
+                   "kubernetes: the volume's mount folder, here and in the container (default: this folder)");
+}
+
+void add_submit_options(CLI::App& app, SubmitArguments& options) {
+    app.add_option("--to", options.farm, "slurm, openjd, kubernetes, opencue or parallel")
+        ->required()
+        ->check(CLI::IsMember(farm_names()));
+    app.add_option("look", options.look, "The look: a JSON file of effects in order")->required();
+    app.add_option("capture", options.capture, "capture.json, a pattern such as frame_####.exr, or a folder")
+        ->required();
+    app.add_option("-o,--output", options.outputs, "Output pattern (.exr, .png); repeatable")
+        ->required()
+        ->allow_extra_args(false);
+    app.add_option("options", options.run_options,
+                   "After --: options of `aftershade run`, such as -- --frames 1-480 --set STEP.PARAM=VALUE");
+    app.add_option("--folder", options.folder, "Folder for the job's files, new or empty")
+        ->capture_default_str();
+    app.add_option("--name", options.name, "The job's name (default: aftershade- and the look's name)");
+    add_division_options(app, options);
+    add_resource_options(app, options);
+}
+
+/// Absolute and normal, without a slash at its end. "" is this folder.
+std::string absolute_path(const std::string& path) {
+    std::string normal = fs::absolute(path.empty() ? "." : path).lexically_normal().string();
+    while (normal.size() > 1 && normal.back() == '/') normal.pop_back();
+    return normal;
+}
+
+/// The command line of `aftershade run` that the tasks divide among themselves, behind the program's name.
+/// Looks, captures and outputs are absolute.
+std::vector<std::string> run_words(const SubmitArguments& options) {
+    std::vector<std::string> words{"run", absolute_path(options.look), absolute_path(options.capture)};
+    for (const std::string& output : options.outputs)
+        words.insert(words.end(), {"-o", absolute_path(output)});
+    words.insert(words.end(), options.run_options.begin(), options.run_options.end());
+    return words;
+}
+
+/// Options that tasks have of their own, and those of one farm without that farm.
+void check_submit_options(const SubmitArguments& options, Diagnostics& diagnostics) {
+    constexpr std::array kOfTasks{"--chunk", "--report",  "--history-in", "--history-out",
+                                  "--watch", "--explain", "--dry-run"};
+    for (const std::string& word : options.run_options)
+        for (const std::string option : kOfTasks)
+            if (word == option || word.starts_with(option + "="))
+                diagnostics.error({"-- " + word}, "tasks of a farm cannot have this option; leave it out");
+    if (options.farm == "kubernetes") {
+        if (options.image.empty())
+            diagnostics.error({"--to kubernetes"}, "needs --image, a container image with aftershade in it");
+        if (options.volume_claim.empty())
+            diagnostics.error({"--to kubernetes"},
+                              "needs --volume-claim, the claim of a volume with the look and the capture");
+        const std::string mount = absolute_path(options.mount);
+        std::vector<std::string> paths{options.look, options.capture, options.folder};
+        paths.insert(paths.end(), options.outputs.begin(), options.outputs.end());
+        for (const std::string& path : paths)
+            if (const fs::path below = fs::path(absolute_path(path)).lexically_relative(mount);
+                below.empty() || *below.begin() == "..")
+                diagnostics.error({path}, "does not lie below " + mount +
+                                              ", the only folder that tasks see; move it there, or choose "
+                                              "--mount");
+    } else if (!options.image.empty() || !options.volume_claim.empty() || !options.mount.empty()) {
+        diagnostics.error({"--to " + options.farm},
+                          "has no containers; --image, --volume-claim and --mount are for kubernetes");
+    }
+    std::error_code failure;
+    if (fs::exists(options.folder) && !fs::is_empty(options.folder, failure))
+        diagnostics.error(
+            {"--folder " + options.folder},
+            "is not empty; choose another folder, or remove it: reports of an earlier job would "
+            "count for this one");
+}
 
 constexpr int kLeastFrames = 10;         // a task starts and compiles shaders for seconds
 constexpr int kWarmupFactor = 4;         // a quarter more frames rendered, at most
@@ -151,8 +284,8 @@ void write_job(const FarmJob& job, const FarmFiles& files) {
 
 std::string division_text(const SubmitArguments& options, const JobFrames& run, const FarmJob& job) {
     const int frames = int(run.frames.size()), tasks = job.tasks();
-    std::string text = fmt::format("{} {} in {} {} of about {}", frames, frames == 1 ? "frame" : "frames",
-                                   tasks, tasks == 1 ? "task" : "tasks", (frames + tasks - 1) / tasks);
+    std::string text = fmt::format("{} in {} of about {}", counted(std::size_t(frames), "frame"),
+                                   counted(std::size_t(tasks), "task"), (frames + tasks - 1) / tasks);
     if (options.tasks == 0 && options.frames_per_task == 0)
         text +=
             fmt::format(" (at least {}, and {} times the warm-up; choose with --tasks or --frames-per-task)",
@@ -161,8 +294,8 @@ std::string division_text(const SubmitArguments& options, const JobFrames& run, 
         text += fmt::format("; each renders up to {} frames before its own to warm history up",
                             run.warmup_frames);
     if (job.history == FarmHistory::exact)
-        text += fmt::format("; exact history: {} {} of tasks, each task after the one before it",
-                            job.rows.size(), job.rows.size() == 1 ? "row" : "rows");
+        text += fmt::format("; exact history: {} of tasks, each task after the one before it",
+                            counted(job.rows.size(), "row"));
     return text + "\n";
 }
 

@@ -3,12 +3,9 @@
 
 #include <functional>
 
+#include "cli/cli11.h"
 #include "framework/base/error.h"
 #include "framework/batch/process_codes.h"
-
-namespace CLI {
-class App;
-}  // namespace CLI
 
 namespace aftershade::cli {
 

@@ -6,13 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/cli11.h"
 #include "cli/gl_options.h"
 #include "framework/base/diagnostics.h"
 #include "framework/scene/visibility.h"
-
-namespace CLI {
-class App;
-}
 
 namespace aftershade::cli {
 

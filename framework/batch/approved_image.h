@@ -3,16 +3,37 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "framework/batch/case_origin.h"
+#include <nlohmann/json_fwd.hpp>
+
 #include "framework/compare/compare_files.h"
 #include "framework/gpu/context.h"
 
 namespace aftershade {
+
+/// What a step gave, for one frame.
+struct StepHashes {
+    std::string step;
+    std::map<std::string, std::string> outputs;  ///< hash of the pixels, by output
+    bool operator==(const StepHashes&) const = default;
+};
+
+/// As a sidecar keeps it; hashes have 16 hexadecimal digits. Older sidecars have none of it.
+struct CaseOrigin {
+    std::map<std::string, std::string> files;   ///< hash, by name: "effects/bloom/tent.glsl"
+    std::map<std::string, std::string> values;  ///< "bloom.radius": "40", as a document writes it
+    std::vector<StepHashes> steps;              ///< in the look's order
+    bool operator==(const CaseOrigin&) const = default;
+};
+
+/// Adds its keys to a sidecar: files, values, steps.
+void add_origin(const CaseOrigin& origin, nlohmann::ordered_json& sidecar);
+/// The keys of a sidecar, which may be hostile.
+CaseOrigin origin_of(const nlohmann::ordered_json& sidecar);
 
 /// The environment that pictures depend on besides the look and the capture. The same input gives the same
 /// bits on one renderer, Mesa and LLVM, on every processor with the same instructions, by any maker.
@@ -42,7 +63,7 @@ nlohmann::ordered_json json_of(const GoldenEnvironment& environment);
 
 /// Hashes of a picture's sources; "" for an unknown one.
 struct GoldenSources {
-    std::string look;     ///< hash of the look, its effects and plug-ins (look_hash.h)
+    std::string look;     ///< hash of the look, its effects and plug-ins (bound_case.h)
     std::string capture;  ///< hash of the capture's files and profiles (capture_hash.h)
     std::string program;  ///< version of Aftershade
 };

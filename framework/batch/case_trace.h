@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/batch/approved_image.h"
 #include "framework/batch/bound_case.h"
-#include "framework/batch/case_origin.h"
 #include "framework/batch/golden_render.h"
 #include "framework/effect/registry.h"
 

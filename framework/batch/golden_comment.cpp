@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "framework/base/text.h"
-#include "framework/batch/report_file.h"
-#include "framework/batch/thumbnail_sheet.h"
+#include "framework/batch/report_page.h"
+#include "framework/batch/report_pictures.h"
 
 namespace aftershade {
 

@@ -1,4 +1,4 @@
-// The tags of commits that approve cases of a golden suite.
+// The tags of commits that approve cases of a golden suite, and what else git says.
 #pragma once
 
 #include <filesystem>
@@ -24,5 +24,10 @@ std::vector<TaggedCommit> commits_of_git(const std::filesystem::path& folder, co
 /// its subject, since a rebase changes hashes. `notes` gets a line for each commit whose tags do not count.
 std::vector<GoldenDecision> decisions_of_commits(const std::vector<TaggedCommit>& commits,
                                                  std::vector<std::string>& notes);
+
+/// The lines that `git -C folder WORDS` prints; none where git is absent, fails, or takes 10 s. Paths among
+/// the words are names, never patterns. The repository is the folder's, also in a hook of another one.
+std::vector<std::string> lines_of_git(const std::filesystem::path& folder,
+                                      const std::vector<std::string>& words);
 
 }  // namespace aftershade

@@ -9,7 +9,7 @@
 #include "framework/base/text.h"
 #include "framework/batch/capture_hash.h"
 #include "framework/batch/case_trace.h"
-#include "framework/batch/git_lines.h"
+#include "framework/batch/golden_commits.h"
 
 namespace aftershade {
 

@@ -1,23 +1,22 @@
 #include "framework/batch/report_page.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/open_file.h"
 #include "framework/base/side_file.h"
-#include "framework/batch/page_pixels.h"
-#include "framework/batch/report_file.h"
+#include "framework/batch/report_pictures.h"
 #include "framework/compare/layer_file.h"
 #include "framework/image/false_color.h"
 
@@ -307,6 +306,21 @@ void write_report_page(const fs::path& report, const fs::path& page, const Repor
     replace_mark(html, "<!-- script -->",
                  fmt::format("<script type=\"module\">\n{}</script>", report_page_script()));
     write_text_file(page, html);
+}
+
+void with_report(const std::filesystem::path& folder, const std::function<void(Json&)>& use) {
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+    const std::string file = (folder / "report.json").string();
+    std::string fault;
+    const std::string text = read_file_below(folder, "report.json", kMostBytes, fault);
+    if (!fault.empty()) throw Error(ErrorKind::capture, file + ": " + fault);
+    try {
+        Json report = Json::parse(text);
+        use(report);
+    } catch (const Json::exception& error) {
+        throw Error(ErrorKind::capture,
+                    fmt::format("{}: is not a report of a golden suite: {}", file, error.what()));
+    }
 }
 
 }  // namespace aftershade

@@ -1,10 +1,12 @@
-// The report of a golden suite as one HTML page.
+// The report of a golden suite: as one HTML page, and as other programs hand it back.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <functional>
 #include <string>
+
+#include <nlohmann/json_fwd.hpp>
 
 namespace aftershade {
 
@@ -33,5 +35,10 @@ nlohmann::ordered_json report_page_data(const std::filesystem::path& report,
 /// The bytes of a PNG below the report, by its relative path. Throws Error(ErrorKind::capture) where it is
 /// none.
 std::string read_report_png(const std::filesystem::path& report, const std::string& name);
+
+/// Reads `folder`/report.json and calls `use` with it. Throws Error(ErrorKind::capture) where it cannot be
+/// read, or `use` misses a key or finds another type.
+void with_report(const std::filesystem::path& folder,
+                 const std::function<void(nlohmann::ordered_json&)>& use);
 
 }  // namespace aftershade

@@ -1,6 +1,8 @@
 #include "framework/batch/worker.h"
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/types.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,14 +12,59 @@
 #include <csignal>
 #include <utility>
 
+#include "framework/base/child_process.h"
 #include "framework/base/memory_limit.h"
-#include "framework/batch/spawn.h"
+#include "framework/base/status.h"
 
 namespace aftershade {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// A worker's process and its pipes.
+
+struct SpawnedWorker {
+    pid_t process = -1;             ///< also the id of its process group
+    Descriptor out, error, status;  ///< reading ends, not blocking; of its own streams there are none
+};
+
+constexpr int kStatusDescriptor = 3;
+
+std::vector<std::string> child_environment(const WorkerCommand& command) {
+    std::map<std::string, std::string> added = command.environment;
+    added[kStatusFdVariable] = std::to_string(kStatusDescriptor);
+    std::vector<std::string> all;
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string text = *entry, name = text.substr(0, text.find('='));
+        if (!added.contains(name) && !command.without.contains(name)) all.push_back(text);
+    }
+    for (const auto& [name, value] : added) all.push_back(name + "=" + value);
+    return all;
+}
+
+/// Throws Error(ErrorKind::effect) where the program cannot be started.
+SpawnedWorker spawn_worker(const WorkerCommand& command) {
+    Pipe out = make_pipe(), error = make_pipe(), status = make_pipe();
+    const bool shares = command.shares_streams;
+    ChildCommand child;
+    child.arguments = command.arguments;
+    child.environment = child_environment(command);
+    child.descriptors = {command.input, shares ? STDOUT_FILENO : out.write.get(),
+                         shares ? STDERR_FILENO : error.write.get(), status.write.get()};
+    child.limits = static_cast<const ChildLimits&>(command.limits);
+    child.leads_group = true;
+    SpawnedWorker spawned;
+    spawned.process = spawn_child(child);
+    spawned.status = std::move(status.read);
+    if (!shares) {
+        spawned.out = std::move(out.read);
+        spawned.error = std::move(error.read);
+    }
+    for (const Descriptor* end : {&spawned.out, &spawned.error, &spawned.status})
+        if (end->get() >= 0) fcntl(end->get(), F_SETFL, O_NONBLOCK);
+    return spawned;
+}
 
 // How late a timeout, an interrupt or a silent end may be noticed.
 constexpr int kPollInterval_ms = 20;

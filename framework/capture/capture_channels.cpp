@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "framework/base/diagnostics.h"
 #include "framework/base/error.h"
 #include "framework/base/option.h"
 #include "framework/capture/capture_internal.h"
 #include "framework/capture/channel_names.h"
 #include "framework/capture/encode_role.h"
+#include "framework/file/exr_loss.h"
 #include "framework/image/role.h"
 
 namespace aftershade {
@@ -90,6 +92,30 @@ std::vector<StoredChannel> CaptureReader::read_stored_channels(
         channels.push_back(std::move(stored));
     }
     return channels;
+}
+
+/// Pictures are compressed with loss by intent. A depth, a vector or an id that lost bits is another one.
+void CaptureReader::find_losses(OpenFrame& open) {
+    for (const auto& [role, source] : open.roles) {
+        const RoleKind kind = kind_of_role(role);
+        if (kind == RoleKind::light || kind == RoleKind::display || kind == RoleKind::other) continue;
+        std::vector<std::string> lost;
+        std::string compression;
+        for (const std::vector<std::string>& layer : source.channels)
+            for (const std::string& channel : layer) {
+                if (channel.empty()) continue;
+                const std::string& stored = source.file->compression_of(channel);
+                if (!loses_bits(stored, channel, source.file->type_of(channel))) continue;
+                lost.push_back(channel);
+                compression = stored;
+            }
+        if (lost.empty()) continue;
+        const bool is_own_file = source.file != open.main.get();
+        open.header.warnings.push_back(role + " is read from " + list_of_names(lost, "and") +
+                                       (is_own_file ? " of the role's own file" : "") +
+                                       ", stored with loss (" + compression +
+                                       "): its values are not exact (write them with zip, zips or piz)");
+    }
 }
 
 }  // namespace aftershade

@@ -8,7 +8,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/capture/light.h"
-#include "framework/file/deep_image.h"
+#include "framework/file/exr_file.h"
 
 namespace aftershade {
 

@@ -1,4 +1,4 @@
-// One spelling for the names of channels, which programs write in several.
+// One spelling for the names of channels, which programs write in several; which of them make up a role.
 #pragma once
 
 #include <string>
@@ -32,5 +32,17 @@ std::vector<std::string> channels_of_motion(const std::vector<std::string>& chan
 /// The role that the last word of a file's name says, before the number of the frame: "depth" of
 /// shot_zdepth.0001.exr. "" for none. `stem` is the name without its extension.
 std::string role_in_file_name(std::string_view stem);
+
+/// Per layer that is added up, per component; "" for an optional channel that is absent.
+using FoundChannels = std::vector<std::vector<std::string>>;
+
+/// Those that a file has, of all layers.
+inline std::vector<std::string> names_of(const FoundChannels& found) {
+    std::vector<std::string> names;
+    for (const auto& layer : found)
+        for (const std::string& name : layer)
+            if (!name.empty()) names.push_back(name);
+    return names;
+}
 
 }  // namespace aftershade

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/capture/found_channels.h"
+#include "framework/capture/channel_names.h"
 #include "framework/file/exr_file.h"
 
 namespace aftershade {

@@ -9,7 +9,7 @@
 #include "framework/base/error.h"
 #include "framework/base/parallel.h"
 #include "framework/capture/capture_grammar.h"
-#include "framework/image/coverage.h"
+#include "framework/image/image.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

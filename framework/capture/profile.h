@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "framework/base/diagnostics.h"
-#include "framework/capture/found_channels.h"
+#include "framework/capture/channel_names.h"
 #include "framework/document/document.h"
 #include "framework/file/exr_file.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/capture/found_channels.h"
+#include "framework/capture/channel_names.h"
 #include "framework/capture/frame_file.h"
 
 namespace aftershade {

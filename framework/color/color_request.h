@@ -2,6 +2,7 @@
 #pragma once
 
 #include <compare>
+#include <cstdlib>
 #include <map>
 #include <string>
 #include <utility>
@@ -49,6 +50,16 @@ struct ColorNames {
 /// "ocio://default", by which OpenColorIO names the configs that it holds: not a path.
 inline bool is_config_address(const std::string& path) {
     return path.starts_with("ocio://");
+}
+
+inline constexpr const char* kConfigVariable = "OCIO";
+/// Set beside it, also for the processes that this one starts, where the user did not write the variable.
+inline constexpr const char* kConfigIsOfOption = "AFTERSHADE_OCIO_IS_OF_OPTION";
+
+/// For this process and those that it starts, as if the variable had named it. [not thread-safe]
+inline void choose_config(const std::string& path) {
+    setenv(kConfigVariable, path.c_str(), 1);
+    setenv(kConfigIsOfOption, "1", 1);
 }
 
 }  // namespace aftershade

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "framework/base/diagnostics.h"
-#include "framework/color/config_variable.h"
+#include "framework/color/color_request.h"
 #include "framework/image/color_space.h"
 
 namespace aftershade {

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "framework/compare/compare_area.h"
-#include "framework/compare/compare_levels.h"
+#include "framework/compare/difference_rules.h"
 #include "framework/compare/flip.h"
 #include "framework/compare/layer.h"
 #include "framework/compare/layer_file.h"
-#include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_differences.h"
 #include "framework/image/color_encoding.h"
 

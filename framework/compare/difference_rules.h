@@ -1,9 +1,12 @@
-// When a pixel counts as failing.
+// Which pixels count, and when one counts as failing.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace aftershade {
 
@@ -64,6 +67,21 @@ struct DifferenceRules {
     double fail_relative = 0, warn_relative = 0;
     double fail_ulp = 0, warn_ulp = 0;
     StoredPrecision stored;  ///< of a layer; areas have their layer's
+};
+
+/// The limits of each pixel of an image, row by row: 0 the layer's limits, kLeftOut none, i the limits
+/// limits[i - 1] of an area. Empty: the layer's limits for every pixel. [value type]
+struct PixelAreas {
+    static constexpr std::uint8_t kLeftOut = 255;
+    static constexpr std::size_t kMost = 254;  ///< areas with limits of their own
+
+    std::vector<std::uint8_t> of_pixel;
+    std::vector<DifferenceRules> limits;
+
+    std::uint8_t at(int x, int y, int width) const {
+        return of_pixel.empty() ? 0 : of_pixel[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+    }
+    bool is_left_out(int x, int y, int width) const { return at(x, y, width) == kLeftOut; }
 };
 
 }  // namespace aftershade

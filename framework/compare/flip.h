@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "framework/compare/tone_mapper.h"
+#include "framework/compare/flip_band.h"
 #include "framework/image/image.h"
 
 namespace aftershade {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "framework/compare/difference_rules.h"
-#include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_pair.h"
 
 namespace aftershade {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "framework/base/parallel.h"
+#include "framework/compare/difference_rules.h"
 #include "framework/compare/forgiveness.h"
-#include "framework/compare/pixel_areas.h"
 #include "framework/compare/pixel_pair.h"
 
 namespace aftershade {

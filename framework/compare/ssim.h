@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "framework/compare/pixel_areas.h"
+#include "framework/compare/difference_rules.h"
 #include "framework/image/image.h"
 
 namespace aftershade {

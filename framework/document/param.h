@@ -173,9 +173,6 @@ std::vector<SweepValue> sweep_values(const ParamSpec& spec);
 /// check_relation_declarations checks the names in `requires`, once all parameters are known.
 std::optional<ParamSpec> read_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
                                          std::span<const ParamType> types);
-/// The same with the check.
-std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
-                                          std::span<const ParamType> types = core_param_types());
 
 /// Reads a value for `spec`: a literal in the declared unit, or a string with a compatible unit. `label`
 /// names the parameter in messages: "bokeh.f_number: 0.02 is below the minimum 0.05".

@@ -118,12 +118,4 @@ std::optional<ParamSpec> read_param_spec(const std::string& name, const Node& no
     return read_spec(name, name, SpecOwner::manifest, node, diagnostics, types);
 }
 
-std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node, Diagnostics& diagnostics,
-                                          std::span<const ParamType> types) {
-    const int errors_before = diagnostics.error_count();
-    grammar::check_block(node, param_block(types), {name, name}, diagnostics);
-    if (diagnostics.error_count() > errors_before) return std::nullopt;
-    return read_param_spec(name, node, diagnostics, types);
-}
-
 }  // namespace aftershade

@@ -1,17 +1,40 @@
-// The words of a shader, as far as checks by text need them.
+// The text of a shader with the author's lines, and its words, as far as checks by text need them.
 #pragma once
 
 #include <cctype>
 #include <cstddef>
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "framework/base/diagnostics.h"
-#include "framework/effect/source_lines.h"
+#include "framework/document/glsl_text.h"
 
 namespace aftershade {
+
+/// A name that many lines share: a shader with its includes has thousands. [safe to copy between threads]
+class FileName {
+public:
+    FileName(std::string name) : name_(std::make_shared<const std::string>(std::move(name))) {}
+    FileName(const char* name) : FileName(std::string(name)) {}
+    const std::string& text() const { return *name_; }
+
+private:
+    std::shared_ptr<const std::string> name_;
+};
+
+struct SourceLine {
+    FileName file;  ///< "<generated>" for the host's own lines
+    int line = 0;
+};
+
+struct ShaderSource {
+    std::string text;
+    std::vector<SourceLine> lines;  ///< of text, from its first
+};
 
 /// A word of a shader, or one character of anything else: a view of a source, which must outlive it.
 struct Token {
@@ -57,5 +80,10 @@ inline constexpr std::size_t kMaxShaderArrayElements = 65'536;  ///< where the s
 /// Holds what the author wrote against kMaxShaderTerms and kMaxShaderArrayElements. What macros make of it is
 /// not seen here.
 void check_shader_size(const ShaderSource& source, Diagnostics& diagnostics);
+
+/// "tile_list" -> "TileListBuffer": the storage block of a buffer.
+inline std::string storage_block_name(const std::string& name) {
+    return camel_case(name) + "Buffer";
+}
 
 }  // namespace aftershade

@@ -21,10 +21,10 @@
 
 #include "framework/base/diagnostics.h"
 #include "framework/document/param.h"
+#include "framework/effect/glsl_tokens.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/effect/param_reader.h"
 #include "framework/effect/param_resources.h"
-#include "framework/effect/source_lines.h"
 #include "framework/image/role.h"
 
 namespace aftershade {

@@ -6,7 +6,7 @@
 
 #include "framework/document/param_type.h"
 #include "framework/document/units.h"
-#include "framework/effect/glsl_names.h"
+#include "framework/effect/glsl_tokens.h"
 #include "framework/effect/shader_source.h"
 
 namespace aftershade {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "framework/document/formula.h"
-#include "framework/effect/glsl_names.h"
+#include "framework/effect/glsl_tokens.h"
 #include "framework/effect/manifest/manifest_when.h"
 #include "framework/effect/shader_source.h"
 #include "framework/effect/shader_uses.h"

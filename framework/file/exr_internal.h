@@ -5,7 +5,6 @@
 #include "framework/base/memory_limit.h"
 #include "framework/base/open_file.h"
 #include "framework/base/text.h"
-#include "framework/file/deep_image.h"
 #include "framework/file/exr_file.h"
 
 #include <Imath/ImathBox.h>

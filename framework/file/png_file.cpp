@@ -211,45 +211,23 @@ void write_png(const fs::path& path, const Image& display, const PngText& text, 
     stream.commit();
 }
 
-namespace {
-
-/// Whether the file is a whole PNG.
-bool visit_chunks(const fs::path& path,
-                  const std::function<void(const std::string&, std::span<const unsigned char>)>& visit) {
+std::optional<PngColor> read_png_color(const fs::path& path) {
     std::error_code failure;
     std::string head(kSignatureBytes, '\0');
     if (!fs::is_regular_file(path, failure) ||
         !std::ifstream(path, std::ios::binary).read(head.data(), std::streamsize(head.size())) ||
         head != "\x89PNG\r\n\x1a\n")
-        return false;
+        return std::nullopt;
+    PngColorReader colors;
     try {
         const std::string text = read_bytes(path);
-        check_chunks(path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()}, visit);
+        check_chunks(
+            path, {reinterpret_cast<const unsigned char*>(text.data()), text.size()},
+            [&](const std::string& type, std::span<const unsigned char> data) { colors.read(type, data); });
     } catch (const Error&) {
-        return false;
+        return std::nullopt;
     }
-    return true;
-}
-
-}  // namespace
-
-std::optional<std::string> read_png_text(const fs::path& path, const std::string& keyword) {
-    std::optional<std::string> found;
-    const std::string head = keyword + '\0';
-    const bool is_whole =
-        visit_chunks(path, [&](const std::string& type, std::span<const unsigned char> data) {
-            const std::string content(data.begin(), data.end());
-            if (type == "tEXt" && content.starts_with(head)) found = content.substr(head.size());
-        });
-    return is_whole ? found : std::nullopt;
-}
-
-std::optional<PngColor> read_png_color(const fs::path& path) {
-    PngColorReader colors;
-    const auto read = [&](const std::string& type, std::span<const unsigned char> data) {
-        colors.read(type, data);
-    };
-    return visit_chunks(path, read) ? std::optional(colors.color()) : std::nullopt;
+    return colors.color();
 }
 
 namespace {

@@ -34,9 +34,6 @@ std::string encode_png(const std::string& name, const Image& display, const PngT
 void write_png(const std::filesystem::path& path, const Image& display, const PngText& text = {},
                const PngMeaning& meaning = {});
 
-/// The text of a keyword; nullopt where the file is not a whole PNG or has no such text.
-std::optional<std::string> read_png_text(const std::filesystem::path& path, const std::string& keyword);
-
 /// The information in the chunks of a complete PNG; nullopt for any other file.
 std::optional<PngColor> read_png_color(const std::filesystem::path& path);
 

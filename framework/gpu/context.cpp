@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <exception>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -12,17 +14,33 @@
 #include "framework/base/error.h"
 #include "framework/base/memory_limit.h"
 #include "framework/base/text.h"
+#include "framework/gpu/backend.h"
 #include "framework/gpu/context_internal.h"
+#include "framework/gpu/device.h"
+#include "framework/gpu/driver_cache.h"
 #include "framework/gpu/egl_current.h"
-#include "framework/gpu/egl_platform.h"
 #include "framework/gpu/flushed_denormals.h"
-#include "framework/gpu/foreign_context.h"
 #include "framework/gpu/fork_guard.h"
 #include "framework/gpu/handle.h"
-#include "framework/gpu/make_platform.h"
+#include "framework/gpu/platform.h"
 
 namespace aftershade::gpu {
+
 namespace {
+
+// The platform of a backend.
+
+/// The platform of one backend. Throws Error(ErrorKind::gl) whose message is the reason alone, and
+/// Error(ErrorKind::usage) where no device has the name of the choice.
+std::unique_ptr<Platform> make_platform(const GlChoice& choice) {
+    prepare_driver_cache();
+    const bool is_osmesa = choice.backend == Backend::osmesa;
+    if (is_osmesa && names_one_device(choice.device))
+        throw Error(ErrorKind::gl, "OSMesa draws on no device; name none, or take another backend");
+    if (is_osmesa) return make_osmesa_platform();
+    return make_egl_platform(
+        choice.backend == Backend::egl_software ? Renderer::software : Renderer::hardware, choice.device);
+}
 
 constexpr std::size_t kMaxErrors = 16;
 constexpr std::size_t kMaxDebugText = 255;
@@ -50,6 +68,15 @@ void GLAD_API_PTR on_debug_message(GLenum, GLenum type, GLuint, GLenum, GLsizei 
 }
 
 }  // namespace
+
+void load_ahead(Backend backend) noexcept {
+    // Its size would count against what a context requires.
+    if (backend != Backend::osmesa || address_space_left()) return;
+    try {
+        load_osmesa();
+    } catch (const std::exception&) {
+    }
+}
 
 Context::~Context() {
     if (impl_) impl_->half_kernels.reset();  // its objects refer to this

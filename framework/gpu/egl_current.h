@@ -18,4 +18,18 @@ void release_egl_context(const EglCurrent& found) noexcept;
 /// The context, where there was one, and the API.
 void restore_egl_context(const EglCurrent& found) noexcept;
 
+/// Stands around calls of a library that makes contexts current. What EGL had current in this thread, beside
+/// our own contexts, is current again when this goes; where nothing was, our context stays. Also notices
+/// where the program has put another context in the place of ours. [one thread; nests]
+class ForeignContextGuard {
+public:
+    ForeignContextGuard();
+    ~ForeignContextGuard();
+    ForeignContextGuard(const ForeignContextGuard&) = delete;
+    ForeignContextGuard& operator=(const ForeignContextGuard&) = delete;
+
+private:
+    EglCurrent found_;
+};
+
 }  // namespace aftershade::gpu

@@ -1,5 +1,3 @@
-#include "framework/gpu/egl_platform.h"
-
 #include <cstdlib>
 #include <mutex>
 #include <optional>
@@ -12,6 +10,7 @@
 #include "framework/base/text.h"
 #include "framework/gpu/driver_faults.h"
 #include "framework/gpu/egl_api.h"
+#include "framework/gpu/platform.h"
 
 namespace aftershade::gpu {
 namespace {

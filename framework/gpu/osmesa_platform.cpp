@@ -1,5 +1,3 @@
-#include "framework/gpu/osmesa_platform.h"
-
 #include <array>
 #include <mutex>
 
@@ -7,6 +5,7 @@
 
 #include "framework/base/error.h"
 #include "framework/gpu/egl_current.h"
+#include "framework/gpu/platform.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 // OSMesaMakeCurrent keeps 160 bytes for each context to the end of the process (Mesa 22.3).

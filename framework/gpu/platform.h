@@ -61,4 +61,18 @@ inline constexpr unsigned int kGlVersion = 0x1F02;
 /// glGetString through `platform`; empty where GL gives null, which is how a null context shows itself.
 std::string gl_string(const Platform& platform, unsigned int name);
 
+enum class Renderer { hardware, software };
+
+/// EGL without a window, opened at run time. Tries every EGL device of the kind and the name asked for ("":
+/// any); a renderer of the other kind is refused. Throws Error(ErrorKind::gl) whose message is the reason
+/// alone, and Error(ErrorKind::usage) where no device has the name.
+std::unique_ptr<Platform> make_egl_platform(Renderer kind, const std::string& device);
+/// A context that shares objects with the caller's, of whichever renderer. Throws likewise.
+std::unique_ptr<Platform> make_egl_platform(const SharedEglContext& shared);
+
+/// OSMesa, opened at run time. Throws Error(ErrorKind::gl) whose message is the reason alone.
+std::unique_ptr<Platform> make_osmesa_platform();
+/// Throws Error(ErrorKind::gl).
+void load_osmesa();
+
 }  // namespace aftershade::gpu

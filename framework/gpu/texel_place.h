@@ -8,7 +8,7 @@
 #include <string>
 
 #include "framework/gpu/context.h"
-#include "framework/gpu/texture_desc.h"
+#include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
 

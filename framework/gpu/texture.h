@@ -12,7 +12,7 @@
 #include "framework/gpu/handle.h"
 #include "framework/gpu/object_cache.h"
 #include "framework/gpu/texel_read.h"
-#include "framework/gpu/texture_desc.h"
+#include "framework/gpu/texture_format.h"
 
 namespace aftershade::gpu {
 

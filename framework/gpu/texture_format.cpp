@@ -7,6 +7,7 @@
 #include <glad/gl.h>
 
 namespace aftershade::gpu {
+
 namespace {
 
 struct FormatInfo {
@@ -76,6 +77,22 @@ bool is_signed_integer(TextureFormat format) {
 
 GlFormat gl_format(TextureFormat format) {
     return info(format).gl;
+}
+
+bool may_share_memory(const TextureDesc& a, const TextureDesc& b) {
+    TextureDesc as_b = a;
+    as_b.format = b.format;
+    return as_b == b && bytes_per_texel(a.format) == bytes_per_texel(b.format);
+}
+
+std::uint64_t byte_size(const TextureDesc& desc) {
+    std::uint64_t texels = 0;
+    for (int level = 0; level < desc.mips; ++level) {
+        texels += static_cast<std::uint64_t>(std::max(1, desc.width >> level)) *
+                  static_cast<std::uint64_t>(std::max(1, desc.height >> level));
+    }
+    return texels * static_cast<std::uint64_t>(desc.layers) *
+           static_cast<std::uint64_t>(bytes_per_texel(desc.format));
 }
 
 }  // namespace aftershade::gpu

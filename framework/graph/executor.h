@@ -14,9 +14,15 @@
 #include "framework/gpu/texture.h"
 #include "framework/gpu/timer.h"
 #include "framework/graph/frame_graph.h"
-#include "framework/graph/pass_range.h"
 
 namespace aftershade::graph {
+
+/// Passes begin .. end - 1 by their index in the graph; end -1: to the last.
+struct PassRange {
+    int begin = 0;
+    int end = -1;
+    bool contains(int pass) const { return pass >= begin && (end < 0 || pass < end); }
+};
 
 struct PassTime {
     std::string pass;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "framework/graph/frame_graph.h"
-#include "framework/graph/pass_uses.h"
+#include "framework/graph/frame_graph_internal.h"
 
 namespace aftershade::graph {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/graph/frame_graph.h"
-#include "framework/graph/pass_uses.h"
+#include "framework/graph/frame_graph_internal.h"
 
 namespace aftershade::graph {
 namespace {

@@ -1,7 +1,8 @@
-// The checks of FrameGraph. Internal to framework/graph.
+// The checks of FrameGraph, and which versions a pass needs and makes. Internal to framework/graph.
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "framework/graph/frame_graph.h"
 
@@ -14,5 +15,18 @@ void check_pass(const FrameGraph& graph, const Pass& pass);
 /// gave or that a later write made stale.
 const FrameGraph::Texture& live(const FrameGraph& graph, TextureHandle handle, std::string_view user);
 const FrameGraph::Buffer& live(const FrameGraph& graph, BufferHandle handle, std::string_view user);
+
+/// A texture, by its index, or a buffer, by its index plus the number of textures, as it is after a write.
+struct Version {
+    int resource = -1;
+    int version = 0;
+};
+
+struct PassUses {
+    std::vector<Version> needs;  ///< with what was there before a write that keeps some of it
+    std::vector<Version> makes;
+};
+
+PassUses uses_of(const FrameGraph& graph, int pass);
 
 }  // namespace aftershade::graph

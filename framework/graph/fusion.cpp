@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "framework/graph/pass_uses.h"
+#include "framework/graph/frame_graph_internal.h"
 
 namespace aftershade::graph {
 namespace {

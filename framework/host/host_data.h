@@ -18,7 +18,7 @@
 #include "framework/effect/pass_program.h"
 #include "framework/effect/registry.h"
 #include "framework/gpu/context.h"
-#include "framework/gpu/foreign_context.h"
+#include "framework/gpu/egl_current.h"
 #include "framework/gpu/fork_guard.h"
 #include "framework/host/failures.h"
 

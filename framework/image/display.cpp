@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "framework/image/coverage.h"
+#include "framework/image/image.h"
 #include "framework/image/srgb.h"
 
 namespace aftershade {

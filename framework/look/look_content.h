@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/diagnostics.h"
+#include "framework/effect/color_param.h"
 #include "framework/effect/manifest/manifest.h"
 #include "framework/look/pipeline.h"
 
@@ -26,5 +28,15 @@ std::string content_of_values(const PipelineStep& step);
 /// The manifest, its modules' manifests, native sources, and every shader with what it includes: each file's
 /// name and bytes, in any folder. Throws Error(ErrorKind::usage) for a file that cannot be read.
 std::string content_of_effect(const EffectManifest& manifest, const std::filesystem::path& glsl_folder);
+
+struct StepColorRequest {
+    const ParamSpec* file = nullptr;  ///< the parameter that it is for; of the step's manifest
+    ColorRequest request;
+};
+/// With every value that the step's parameters may have in any frame.
+std::vector<StepColorRequest> color_requests(const PipelineStep& step);
+
+/// Reports those that OpenColorIO cannot meet, each at the value that is at fault, else at `place`.
+void check_color_requests(const PipelineStep& step, const Place& place, Diagnostics& diagnostics);
 
 }  // namespace aftershade

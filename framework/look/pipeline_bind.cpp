@@ -8,7 +8,7 @@
 #include "framework/document/units.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
-#include "framework/look/color_requests.h"
+#include "framework/look/look_content.h"
 #include "framework/look/pipeline.h"
 #include "framework/look/wiring.h"
 

@@ -75,12 +75,12 @@ Camera camera_of(const json& document) {
     Camera camera;
     for (const auto& [name, value] : document.at("values").items()) camera.set(name, value.get<double>());
     camera.lens_model = document.at("lens_model").get<std::string>();
-    if (document.contains("camera_from_world"))
-        camera.camera_from_world = document.at("camera_from_world").get<CameraMatrix>();
-    if (document.contains("ndc_from_world"))
-        camera.ndc_from_world = document.at("ndc_from_world").get<CameraMatrix>();
-    if (document.contains("jitter_px"))
-        camera.jitter_px = document.at("jitter_px").get<std::array<double, 2>>();
+    const auto read = [&](const char* key, auto& value) {
+        if (document.contains(key)) document.at(key).get_to(value.emplace());
+    };
+    read("camera_from_world", camera.camera_from_world);
+    read("ndc_from_world", camera.ndc_from_world);
+    read("jitter_px", camera.jitter_px);
     return camera;
 }
 

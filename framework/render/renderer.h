@@ -14,15 +14,64 @@
 #include "framework/capture/capture.h"
 #include "framework/effect/pass_program.h"
 #include "framework/gpu/buffer.h"
+#include "framework/gpu/texture.h"
+#include "framework/gpu/timer.h"
 #include "framework/graph/executor.h"
+#include "framework/image/color_encoding.h"
+#include "framework/image/image.h"
 #include "framework/look/pipeline.h"
-#include "framework/render/frame_result.h"
+#include "framework/render/audit.h"
 #include "framework/render/native_steps.h"
-#include "framework/render/pending_frame.h"
 #include "framework/render/renderer_options.h"
 #include "framework/render/step_files.h"
+#include "framework/render/telemetry.h"
 
 namespace aftershade {
+
+struct FrameResult {
+    std::map<std::string, Image> images;      ///< by role: what the steps made of the roles asked for
+    std::set<std::string> finite_roles;       ///< of images that were seen to hold no NaN and no infinity
+    std::map<std::string, Image> taps;        ///< by "step.texture"
+    std::vector<graph::PassTime> times;       ///< upload, each pass, readback; empty unless timed
+    std::vector<AuditFinding> audit;          ///< in the order of the passes; empty unless audited
+    std::optional<Window> region;             ///< the part of the display window that was requested
+    std::vector<std::string> messages;        ///< what native code logged
+    std::optional<FrameTelemetry> telemetry;  ///< where it was requested
+    ColorEncoding display_encoding = kSrgbDisplay;  ///< of the image `display`; its curve may be unknown
+    /// Of the image `color`, if it is not light in the capture's primaries.
+    std::optional<ColorEncoding> color_encoding;
+    std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
+};
+
+/// Made by PipelineRenderer::begin(). [the context's thread, within the renderer's life]
+class PendingFrame {
+public:
+    /// The texels of a role or a tap.
+    struct Read {
+        std::string name;
+        bool is_tap = false;
+        Image image;  ///< where they will be
+        gpu::TexelRead texels;
+    };
+
+    explicit PendingFrame(gpu::Context& context) : context_(context) {}
+    PendingFrame(PendingFrame&&) noexcept = default;
+
+    /// What was known when the passes had been issued: all but images, taps and times.
+    FrameResult result;
+    std::vector<Read> reads;
+    bool is_timed = false;
+    bool is_partial = false;  ///< of a sub-frame before the last: nothing is read
+    std::vector<gpu::Duration> uploads;
+    std::vector<graph::PendingTime> passes;
+    std::optional<gpu::Duration> readback;  ///< of reads that were issued; nullopt: finish() does it all
+
+    /// Waits for the passes and the texels. Once.
+    FrameResult finish();
+
+private:
+    gpu::Context& context_;
+};
 
 /// A frame graph for one size and one choice of passes (framework/render/built_graph.h).
 struct BuiltGraph;

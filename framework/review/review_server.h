@@ -7,18 +7,45 @@
 #include <functional>
 #include <map>
 #include <mutex>
-#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "framework/batch/golden_apply.h"
+#include "framework/batch/golden_decisions.h"
 #include "framework/batch/report_page.h"
-#include "framework/review/review_file.h"
 #include "framework/serve/connections.h"
 #include "framework/serve/http_message.h"
 
 namespace aftershade::review {
+
+/// Each call reads the file: another process may have written it. A write replaces it only if it still holds
+/// what was read, so that no reviewer's decision is lost. [thread-safe]
+class ReviewFile {
+public:
+    explicit ReviewFile(std::filesystem::path report) : report_(std::move(report)) {}
+
+    /// Throws Error(ErrorKind::capture) for a faulty file.
+    std::vector<GoldenDecision> read() const;
+
+    /// Applies `change` to what the file holds, as often as another one writes it meanwhile. `change` returns
+    /// false to write nothing. Throws Error(ErrorKind::output).
+    void update(const std::function<bool(std::vector<GoldenDecision>& decisions)>& change) const;
+
+    static constexpr const char* kName = "decisions.json";
+
+private:
+    std::string text() const;
+    std::vector<GoldenDecision> parsed(const std::string& text) const;
+
+    std::filesystem::path report_;
+};
+
+/// Changes with every key of a decision: what a page shows is known by it.
+std::string revision_of(const GoldenDecision& decision);
 
 struct ReviewSetup {
     std::filesystem::path report;  ///< the folder

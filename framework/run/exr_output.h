@@ -7,7 +7,7 @@
 
 #include "framework/capture/capture.h"
 #include "framework/render/renderer.h"
-#include "framework/run/output_options.h"
+#include "framework/run/run_options.h"
 
 namespace aftershade {
 

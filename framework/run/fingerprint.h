@@ -13,7 +13,6 @@
 #include "framework/effect/native/native_library.h"
 #include "framework/look/look.h"
 #include "framework/run/frame_files.h"
-#include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
 
 namespace aftershade {

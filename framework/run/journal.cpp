@@ -22,6 +22,8 @@ namespace aftershade {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JournalFile, path, bytes, modified_ns, hash)
+
 namespace {
 
 struct FileState {
@@ -37,35 +39,23 @@ std::optional<FileState> state_of(const fs::path& file) {
 }
 
 json json_of(const JournalFrame& frame, const std::string& output) {
-    json files = json::array();
-    for (const JournalFile& file : frame.files)
-        files.push_back({{"path", file.path},
-                         {"bytes", file.bytes},
-                         {"modified_ns", file.modified_ns},
-                         {"hash", file.hash}});
-    json line = {{"output", output},
-                 {"frame", frame.frame},
-                 {"setup", frame.setup},
-                 {"fingerprint", frame.fingerprint.hash},
-                 {"seconds", frame.seconds},
-                 {"inputs", frame.fingerprint.inputs},
-                 {"files", files}};
+    json line = {{"output", output},         {"frame", frame.frame},
+                 {"setup", frame.setup},     {"fingerprint", frame.fingerprint.hash},
+                 {"seconds", frame.seconds}, {"inputs", frame.fingerprint.inputs},
+                 {"files", frame.files}};
     if (!frame.fingerprint.before.empty()) line["before"] = frame.fingerprint.before;
     return line;
 }
 
 JournalFrame frame_of(const json& line) {
     JournalFrame frame;
-    frame.frame = line.at("frame").get<int>();
-    frame.setup = line.at("setup").get<std::string>();
-    frame.fingerprint.hash = line.at("fingerprint").get<std::string>();
+    line.at("frame").get_to(frame.frame);
+    line.at("setup").get_to(frame.setup);
+    line.at("fingerprint").get_to(frame.fingerprint.hash);
     frame.fingerprint.before = line.value("before", "");
-    frame.fingerprint.inputs = line.at("inputs").get<FingerprintParts>();
-    frame.seconds = line.at("seconds").get<double>();
-    for (const json& file : line.at("files"))
-        frame.files.push_back({file.at("path").get<std::string>(), file.at("bytes").get<std::uint64_t>(),
-                               file.at("modified_ns").get<std::int64_t>(),
-                               file.at("hash").get<std::string>()});
+    line.at("inputs").get_to(frame.fingerprint.inputs);
+    line.at("seconds").get_to(frame.seconds);
+    line.at("files").get_to(frame.files);
     return frame;
 }
 

@@ -10,7 +10,6 @@
 #include "framework/capture/capture.h"
 #include "framework/look/pipeline.h"
 #include "framework/render/renderer.h"
-#include "framework/run/output_options.h"
 #include "framework/run/run_options.h"
 #include "framework/run/run_report.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/capture/capture.h"
-#include "framework/file/deep_image.h"
+#include "framework/file/exr_file.h"
 #include "framework/scene/world.h"
 
 namespace aftershade::scene {

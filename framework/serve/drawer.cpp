@@ -12,11 +12,10 @@
 #include "framework/base/error.h"
 #include "framework/base/path_bounds.h"
 #include "framework/look/starting_looks.h"
-#include "framework/serve/draw_messages.h"
 #include "framework/serve/drawing_process.h"
+#include "framework/serve/http_message.h"
 #include "framework/serve/look_model.h"
 #include "framework/serve/picture_maker.h"
-#include "framework/serve/refusal.h"
 #include "framework/serve/serve_look.h"
 
 namespace aftershade::serve {

@@ -10,7 +10,7 @@
 #include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/document/document.h"
-#include "framework/serve/refusal.h"
+#include "framework/serve/http_message.h"
 
 namespace aftershade::serve {
 

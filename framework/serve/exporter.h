@@ -12,7 +12,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "framework/serve/refusal.h"
+#include "framework/serve/http_message.h"
 
 namespace aftershade::serve {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "framework/serve/refusal.h"
+#include "framework/serve/http_message.h"
 
 namespace aftershade::serve {
 

@@ -73,4 +73,10 @@ private:
     std::size_t head_ = 0;   // bytes of the head
 };
 
+/// A status of HTTP: 409 where the page is behind what the program or the disk holds, else mostly 400.
+struct Refusal {
+    int status = 400;
+    std::string message;
+};
+
 }  // namespace aftershade::serve

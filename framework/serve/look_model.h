@@ -17,9 +17,9 @@
 #include "framework/effect/registry.h"
 #include "framework/look/look.h"
 #include "framework/look/pipeline.h"
-#include "framework/serve/bound_text.h"
 #include "framework/serve/effect_files.h"
-#include "framework/serve/refusal.h"
+#include "framework/serve/http_message.h"
+#include "framework/serve/look_state.h"
 
 namespace aftershade::serve {
 

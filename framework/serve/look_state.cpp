@@ -1,13 +1,14 @@
 #include "framework/serve/look_state.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "framework/base/error.h"
+#include "framework/document/document.h"
 #include "framework/look/look.h"
 #include "framework/render/frame_drive.h"
-#include "framework/serve/bound_text.h"
 
 namespace aftershade::serve {
 
@@ -119,6 +120,19 @@ Json steps_json(const std::string& text, const BoundText* bound, EffectRegistry&
         list.push_back(std::move(step));
     }
     return list;
+}
+
+std::shared_ptr<BoundText> bind_text(const std::string& text, const std::filesystem::path& path,
+                                     const std::shared_ptr<EffectRegistry>& effects, Diagnostics& faults) {
+    const auto node = parse_document(text, path.string(), faults);
+    auto look = node ? parse_look(*node, faults) : std::nullopt;
+    if (!look) return nullptr;
+    auto bound = std::make_shared<BoundText>();
+    bound->text = text;
+    bound->effects = effects;
+    bound->look = std::move(*look);
+    bound->pipeline = bind_pipeline(bound->look, *effects, {}, faults);
+    return bound;
 }
 
 }  // namespace aftershade::serve

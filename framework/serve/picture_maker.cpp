@@ -16,7 +16,6 @@
 #include "framework/image/role.h"
 #include "framework/run/nan_policy.h"
 #include "framework/run/output.h"
-#include "framework/serve/quick_png.h"
 #include "framework/serve/truths.h"
 #include "framework/serve/view_picture.h"
 

@@ -7,7 +7,6 @@
 #include "framework/serve/connections.h"
 #include "framework/serve/exporter.h"
 #include "framework/serve/look_model.h"
-#include "framework/serve/page_files.h"
 #include "framework/serve/page_server.h"
 #include "framework/serve/picture_queue.h"
 #include "framework/serve/serve_page.h"

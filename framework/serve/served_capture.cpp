@@ -6,7 +6,7 @@
 
 #include "framework/base/error.h"
 #include "framework/base/text.h"
-#include "framework/serve/refusal.h"
+#include "framework/serve/http_message.h"
 
 namespace aftershade::serve {
 

@@ -18,7 +18,7 @@
 #include "framework/file/stored_colors.h"
 #include "framework/image/color_space.h"
 #include "framework/image/role.h"
-#include "framework/serve/refusal.h"
+#include "framework/serve/http_message.h"
 
 namespace aftershade::serve {
 

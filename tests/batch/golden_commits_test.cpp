@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "framework/base/text.h"
-#include "framework/batch/git_lines.h"
 #include "framework/batch/worker.h"
 #include "tests/temporary_folder.h"
 

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "framework/batch/approved_image.h"
+#include "framework/batch/bound_case.h"
 #include "framework/batch/capture_hash.h"
-#include "framework/batch/look_hash.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade::test {

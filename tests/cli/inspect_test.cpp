@@ -9,7 +9,7 @@
 
 #include "framework/batch/process_codes.h"
 #include "framework/file/png_file.h"
-#include "framework/inspect/frame_sheet.h"
+#include "framework/inspect/contact_sheet.h"
 #include "tests/cli/command.h"
 #include "tests/real_captures.h"
 #include "tests/synthetic_capture.h"

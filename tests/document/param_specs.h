@@ -3,10 +3,22 @@
 
 #include <string>
 
+#include "framework/document/grammar_form.h"
 #include "framework/document/param.h"
+#include "framework/document/param_grammar.h"
 #include "tests/documents.h"
 
 namespace aftershade::test {
+
+/// As a manifest's entry of "params" is checked and read.
+inline std::optional<ParamSpec> parse_param_spec(const std::string& name, const Node& node,
+                                                 Diagnostics& diagnostics,
+                                                 std::span<const ParamType> types = core_param_types()) {
+    const int errors_before = diagnostics.error_count();
+    grammar::check_block(node, param_block(types), {name, name}, diagnostics);
+    if (diagnostics.error_count() > errors_before) return std::nullopt;
+    return read_param_spec(name, node, diagnostics, types);
+}
 
 /// The parameter "p"; the test fails where the declaration has faults.
 inline ParamSpec spec_of(const std::string& declaration, const std::string& name = "p",

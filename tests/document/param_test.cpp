@@ -200,7 +200,7 @@ const std::vector<BrokenSpec> kBrokenSpecs = {
 TEST(ParamSpec, SaysWhatIsWrongWithADeclaration) {
     for (const BrokenSpec& broken : kBrokenSpecs) {
         const auto read = [](const Node& node, Diagnostics& diagnostics) {
-            parse_param_spec("p", node, diagnostics);
+            test::parse_param_spec("p", node, diagnostics);
         };
         EXPECT_EQ(faults_of(broken.declaration, read), broken.faults) << broken.declaration;
     }

@@ -79,8 +79,6 @@ TEST(NativeRegistry, NamesBothLibrariesOfOneEffectAndStillOffersTheOthers) {
         fs::copy_file(kCases / name, folder / name);
     NativeRegistry registry({folder.path(), folder.path()}, test_native_libraries());
     EXPECT_EQ(registry.ids(), (std::vector<std::string>{"case", "linked_demo", "older"}));
-    ASSERT_EQ(registry.refusals().size(), 1U);
-    EXPECT_EQ(registry.refusals()[0].file, folder / "wrong_major.so");
     EXPECT_EQ(registry.find("older", "1.0.0").library->place(), (folder / "older.so").string());
     try {
         registry.find("case", "1.0.0");

@@ -87,8 +87,8 @@ ParamSpec steps_spec() {
 
 TEST(ParamTypes, AreThoseOfCoreThenThoseAboveIt) {
     Diagnostics diagnostics;
-    parse_param_spec("p", test::parsed(R"({"type": "flaot", "default": 1, "doc": "."})"), diagnostics,
-                     param_types());
+    test::parse_param_spec("p", test::parsed(R"({"type": "flaot", "default": 1, "doc": "."})"), diagnostics,
+                           param_types());
     EXPECT_EQ(test::lines_of(diagnostics),
               test::Lines{
                   "doc.json:1:10: error: 'type' is 'flaot' but must be 'float', 'int', 'bool', 'enum', "

@@ -1,7 +1,7 @@
 // Deep files whose every sample a test writes down.
 #pragma once
 
-#include "framework/file/deep_image.h"
+#include "framework/file/exr_file.h"
 
 #include <Imath/ImathBox.h>
 #include <OpenEXR/ImfChannelList.h>

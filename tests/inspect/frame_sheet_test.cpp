@@ -1,4 +1,4 @@
-#include "framework/inspect/frame_sheet.h"
+#include "framework/inspect/contact_sheet.h"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/base/error.h"
-#include "framework/serve/guards.h"
 #include "framework/serve/http_message.h"
+#include "framework/serve/serve_page.h"
 #include "tests/serve/client.h"
 
 namespace aftershade::serve {

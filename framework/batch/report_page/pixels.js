@@ -1,4 +1,4 @@
-// Pixels out of the page's own elements, as framework/batch/page_pixels.h writes them.
+// Pixels out of the page's own elements, as framework/batch/report_pictures.h writes them.
 
 async function inflate(text) {
   const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"));

@@ -11,7 +11,7 @@
 
 #include "framework/base/path_bounds.h"
 #include "framework/document/param_type.h"
-#include "framework/effect/glsl_names.h"
+#include "framework/effect/glsl_tokens.h"
 
 namespace aftershade {
 

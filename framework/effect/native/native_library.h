@@ -94,11 +94,6 @@ public:
         std::shared_ptr<NativeLibrary> library;
         NativeLibrary::Effect effect;
     };
-    struct Refusal {
-        std::filesystem::path file;
-        std::string message;
-    };
-
     /// `status`, which may be null, records which library is being loaded and must outlive the registry.
     /// Libraries of the folders run in `process`; without one in this process, where a fault of theirs is a
     /// fault of it.
@@ -112,9 +107,6 @@ public:
     const Entry& find(const std::string& id, const std::string& version);
     /// Ids offered, sorted. Throws as `find` does for folders.
     std::vector<std::string> ids();
-    /// Libraries that could not be used; the others still are. For warnings. Throws as `find` does for
-    /// folders.
-    const std::vector<Refusal>& refusals();
     /// After the effects have ended: throws Error(ErrorKind::effect) where `destroy` of one of them failed,
     /// crashed, ended the process or took too long. [effects in this process cannot be killed]
     void require_ends();
@@ -133,7 +125,7 @@ private:
     bool loaded_ = false;
     std::set<std::filesystem::path> loaded_files_;
     std::map<std::string, std::vector<Entry>> entries_;  // by effect id; more than one is an error
-    std::vector<Refusal> refusals_;
+    std::vector<std::string> refusals_;                  // why libraries could not be used
 };
 
 /// `given` (--plugin-path, in order), then the folders of AFTERSHADE_PLUGIN_PATH, which colons separate;

@@ -38,7 +38,7 @@ const NativeRegistry::Entry& NativeRegistry::find(const std::string& id, const s
         std::string text =
             "no library offers native code for the effect '" + id + "'" + places_searched(folders_);
         text += did_you_mean(id, ids());
-        for (const Refusal& refusal : refusals_) text += "\n  refused: " + refusal.message;
+        for (const std::string& refusal : refusals_) text += "\n  refused: " + refusal;
         throw Error(ErrorKind::effect, text);
     }
     const std::vector<Entry>& entries = found->second;
@@ -63,11 +63,6 @@ std::vector<std::string> NativeRegistry::ids() {
     std::vector<std::string> ids;
     for (const auto& [id, entries] : entries_) ids.push_back(id);
     return ids;
-}
-
-const std::vector<NativeRegistry::Refusal>& NativeRegistry::refusals() {
-    load();
-    return refusals_;
 }
 
 void NativeRegistry::require_ends() {
@@ -101,7 +96,7 @@ void NativeRegistry::load_folder(const fs::path& folder) {
         try {
             add(process_ ? NativeLibrary::open_in(process_, file) : NativeLibrary::open(file));
         } catch (const Error& error) {
-            refusals_.push_back({file, error.what()});
+            refusals_.emplace_back(error.what());
         }
     }
 }
