@@ -16,7 +16,6 @@
 #include "framework/base/data_path.h"
 #include "framework/base/error.h"
 #include "framework/base/text.h"
-#include "framework/batch/approved_image.h"
 #include "framework/effect/native/confinement.h"
 #include "framework/effect/native/native_process.h"
 #include "framework/effect/native/thread_limit.h"

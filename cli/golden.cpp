@@ -16,8 +16,8 @@
 #include "framework/base/input_files.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
-#include "framework/batch/golden_approve.h"
-#include "framework/batch/report_page.h"
+#include "framework/golden/golden_approve.h"
+#include "framework/golden/report_page.h"
 
 namespace aftershade::cli {
 

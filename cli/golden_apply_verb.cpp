@@ -13,9 +13,9 @@
 #include "cli/interrupt.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/text.h"
-#include "framework/batch/golden_apply.h"
-#include "framework/batch/golden_commits.h"
 #include "framework/document/document.h"
+#include "framework/golden/golden_apply.h"
+#include "framework/golden/golden_commits.h"
 
 namespace aftershade::cli {
 

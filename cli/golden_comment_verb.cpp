@@ -7,7 +7,7 @@
 #include "cli/golden_options.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/input_files.h"
-#include "framework/batch/golden_comment.h"
+#include "framework/golden/golden_comment.h"
 
 namespace aftershade::cli {
 

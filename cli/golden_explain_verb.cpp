@@ -8,7 +8,7 @@
 #include "cli/golden_options.h"
 #include "cli/interrupt.h"
 #include "framework/base/text.h"
-#include "framework/batch/golden_explain.h"
+#include "framework/golden/golden_explain.h"
 
 namespace aftershade::cli {
 

@@ -15,7 +15,7 @@
 #include "cli/interrupt.h"
 #include "framework/base/atomic_file.h"
 #include "framework/base/text.h"
-#include "framework/batch/golden_approve.h"
+#include "framework/golden/golden_approve.h"
 
 namespace aftershade::cli {
 

@@ -18,7 +18,7 @@
 #include "cli/gl_options.h"
 #include "cli/interrupt.h"
 #include "framework/base/text.h"
-#include "framework/batch/golden_commits.h"
+#include "framework/golden/golden_commits.h"
 
 namespace aftershade::cli {
 

@@ -9,8 +9,8 @@
 #include "cli/cli11.h"
 #include "cli/exit_code.h"
 #include "cli/gl_options.h"
-#include "framework/batch/golden_approve.h"
-#include "framework/batch/golden_report.h"
+#include "framework/golden/golden_approve.h"
+#include "framework/golden/golden_report.h"
 
 namespace aftershade::cli {
 

@@ -14,8 +14,8 @@
 #include "framework/base/path_bounds.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
-#include "framework/batch/golden_apply.h"
-#include "framework/batch/report_page.h"
+#include "framework/golden/golden_apply.h"
+#include "framework/golden/report_page.h"
 #include "framework/review/review_server.h"
 
 namespace aftershade::cli {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "framework/batch/approved_image.h"
-#include "framework/batch/golden_case.h"
 #include "framework/capture/frame_range.h"
 #include "framework/document/param_type.h"
 #include "framework/effect/usage_check.h"
+#include "framework/golden/approved_image.h"
+#include "framework/golden/golden_case.h"
 #include "tests/every_effect.h"
 
 namespace aftershade::test {

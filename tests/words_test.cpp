@@ -210,7 +210,7 @@ TEST(PublicText, OfPagesAndDocumentsIsPlain) {
     const std::set<std::string> read{".md", ".json", ".py", ".pyi", ".js", ".html"};
     int files = 0;
     for (const char* folder : {"docs", "effects", "glsl", "profiles", "scenes", "python/aftershade",
-                               "framework/batch/report_page", "examples"})
+                               "framework/golden/report_page", "examples"})
         for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
             if (!entry.is_regular_file() || !read.contains(entry.path().extension().string())) continue;
             expect_plain_paragraphs(entry.path());

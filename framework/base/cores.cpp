@@ -1,12 +1,16 @@
 #include "framework/base/cores.h"
 
 #include <sched.h>
+#include <sys/utsname.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 namespace aftershade {
@@ -107,6 +111,38 @@ GroupLimits group_limits() {
 int allotted_cores() {
     const double granted = std::ceil(granted_cores(own_groups(), kGroupsAreAt));
     return int(std::max(1.0, std::min(double(cores_of_affinity()), granted)));
+}
+
+namespace {
+
+/// The first value of `name` in /proc/cpuinfo; "" if there is none.
+std::string cpu_property(std::string_view name) {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with(name) && line.find(": ") != std::string::npos)
+            return line.substr(line.find(": ") + 2);
+    return "";
+}
+
+}  // namespace
+
+std::string cpu_model() {
+    const std::string model = cpu_property("model name");
+    return model.empty() ? "unknown" : model;
+}
+
+std::string cpu_instructions() {
+    utsname system{};
+    uname(&system);
+    std::string machine = system.machine;
+    if (machine != "x86_64") return machine;
+    // Mesa's own switch; it takes no notice of other values, and "avx" leaves FMA in.
+    constexpr std::array<std::string_view, 6> kWithoutFma = {"nosse", "sse",   "sse2",
+                                                             "sse3",  "ssse3", "sse4.1"};
+    const char* limit = std::getenv("GALLIUM_OVERRIDE_CPU_CAPS");
+    const bool limited = limit && std::ranges::find(kWithoutFma, limit) != kWithoutFma.end();
+    const bool fma = (" " + cpu_property("flags") + " ").find(" fma ") != std::string::npos;
+    return fma && !limited ? "x86-64 with FMA" : "x86-64 without FMA";
 }
 
 }  // namespace aftershade

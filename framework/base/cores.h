@@ -1,4 +1,4 @@
-// How many processor cores this process may use, and what its control groups allow it.
+// How many processor cores this process may use, what they are, and what its control groups allow it.
 #pragma once
 
 #include <filesystem>
@@ -23,5 +23,11 @@ struct GroupLimits {
 GroupLimits group_limits(const std::string& groups, const std::filesystem::path& root);
 /// Those of this process.
 GroupLimits group_limits();
+
+/// "model name" of /proc/cpuinfo, or "unknown".
+std::string cpu_model();
+/// The processor instructions that change bits of a software renderer, "x86-64 with FMA", with what limits
+/// Mesa to fewer of them.
+std::string cpu_instructions();
 
 }  // namespace aftershade

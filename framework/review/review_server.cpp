@@ -13,8 +13,8 @@
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
-#include "framework/batch/report_page.h"
 #include "framework/document/document.h"
+#include "framework/golden/report_page.h"
 #include "framework/serve/http_message.h"
 #include "framework/serve/serve_page.h"
 

@@ -14,9 +14,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "framework/batch/golden_apply.h"
-#include "framework/batch/golden_decisions.h"
-#include "framework/batch/report_page.h"
+#include "framework/golden/golden_apply.h"
+#include "framework/golden/golden_decisions.h"
+#include "framework/golden/report_page.h"
 #include "framework/serve/connections.h"
 #include "framework/serve/http_message.h"
 

@@ -1,4 +1,4 @@
-#include "framework/batch/golden_fetch.h"
+#include "framework/golden/golden_fetch.h"
 
 #include <gtest/gtest.h>
 

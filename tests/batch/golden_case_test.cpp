@@ -1,4 +1,4 @@
-#include "framework/batch/golden_case.h"
+#include "framework/golden/golden_case.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/batch/golden_commits.h"
+#include "framework/golden/golden_commits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/batch/golden_decisions.h"
+#include "framework/golden/golden_decisions.h"
 
 #include <gtest/gtest.h>
 

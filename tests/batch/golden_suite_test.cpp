@@ -1,4 +1,4 @@
-#include "framework/batch/golden_suite.h"
+#include "framework/golden/golden_suite.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "framework/batch/approved_image.h"
-#include "framework/batch/bound_case.h"
-#include "framework/batch/capture_hash.h"
+#include "framework/golden/approved_image.h"
+#include "framework/golden/bound_case.h"
+#include "framework/golden/capture_hash.h"
 #include "tests/temporary_folder.h"
 
 namespace aftershade::test {

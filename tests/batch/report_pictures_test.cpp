@@ -1,4 +1,4 @@
-#include "framework/batch/report_pictures.h"
+#include "framework/golden/report_pictures.h"
 
 #include <gtest/gtest.h>
 

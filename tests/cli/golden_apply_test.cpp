@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "framework/batch/approved_image.h"
+#include "framework/golden/approved_image.h"
 #include "tests/cli/golden_suite.h"
 
 namespace aftershade::test {

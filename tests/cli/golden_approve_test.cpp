@@ -5,7 +5,7 @@
 #include <regex>
 #include <thread>
 
-#include "framework/batch/approved_image.h"
+#include "framework/golden/approved_image.h"
 #include "tests/cli/golden_suite.h"
 
 namespace aftershade::test {

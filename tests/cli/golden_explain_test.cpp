@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "framework/batch/approved_image.h"
+#include "framework/golden/approved_image.h"
 #include "tests/cli/golden_suite.h"
 
 namespace aftershade::test {

@@ -5,8 +5,8 @@
 #include <set>
 #include <thread>
 
-#include "framework/batch/approved_image.h"
 #include "framework/file/png_file.h"
+#include "framework/golden/approved_image.h"
 #include "tests/backends.h"
 #include "tests/cli/golden_suite.h"
 

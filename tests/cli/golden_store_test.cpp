@@ -11,7 +11,7 @@
 #include <optional>
 #include <thread>
 
-#include "framework/batch/approved_image.h"
+#include "framework/golden/approved_image.h"
 #include "tests/cli/golden_suite.h"
 
 namespace aftershade::test {

@@ -9,13 +9,13 @@
 #include <string>
 
 #include "framework/base/error.h"
-#include "framework/batch/golden_run.h"
 #include "framework/capture/capture.h"
 #include "framework/capture/profile.h"
 #include "framework/compare/comparison_report.h"
 #include "framework/file/exr_file.h"
 #include "framework/file/hdr_file.h"
 #include "framework/file/png_file.h"
+#include "framework/golden/golden_run.h"
 #include "framework/scene/job.h"
 #include "tests/fuzz/targets.h"
 #include "tests/temporary_folder.h"

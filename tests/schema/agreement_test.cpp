@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "framework/base/error.h"
-#include "framework/batch/golden_suite.h"
 #include "framework/capture/capture_grammar.h"
 #include "framework/capture/profile.h"
 #include "framework/capture/profile_grammar.h"
@@ -23,6 +22,7 @@
 #include "framework/effect/manifest/manifest_grammar.h"
 #include "framework/effect/manifest/manifest_reader.h"
 #include "framework/effect/registry.h"
+#include "framework/golden/golden_suite.h"
 #include "framework/look/look.h"
 #include "framework/look/look_schema.h"
 #include "framework/look/pipeline.h"
