@@ -12,10 +12,10 @@ scene::VisibilityPasses GlVisibility::passes() {
     scene::VisibilityPasses passes;
     passes.trace = [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids, int frame,
                           const scene::VisibilitySettings& settings) {
-        std::vector<std::uint32_t> ids = visibility::trace_ids(passes_, renderer, grids, frame, settings);
-        count({ids, renderer.width_px(), renderer.height_px(), settings.samples}, grids, settings.cache);
-        return ids;
+        return visibility::trace_ids(passes_, renderer, grids, frame, settings);
     };
+    passes.fill = [this](const scene::SampleIds& samples, const scene::ShadingGrids& grids,
+                         const scene::ShadingCacheSettings& cache) { return fill(samples, grids, cache); };
     passes.resolve = [this](const scene::SceneRenderer& renderer, const scene::ShadingGrids& grids,
                             std::span<const std::uint32_t> ids, const scene::SampleIds& addresses) {
         return visibility::resolve_light(passes_, renderer, grids, ids, addresses);
@@ -27,14 +27,16 @@ scene::VisibilityPasses GlVisibility::passes() {
     return passes;
 }
 
-void GlVisibility::count(const scene::SampleIds& samples, const scene::ShadingGrids& grids,
-                         const scene::ShadingCacheSettings& cache) {
+scene::CacheReplay GlVisibility::fill(const scene::SampleIds& samples, const scene::ShadingGrids& grids,
+                                      const scene::ShadingCacheSettings& cache) {
     const bool is_of_tiles =
         cache.cache == scene::ShadingCache::tile || cache.cache == scene::ShadingCache::sorted;
-    counts_.push_back(cache.cache == scene::ShadingCache::fifo
-                          ? visibility::count_shadings_in_buckets(passes_, samples, cache.entries)
-                          : visibility::count_shadings(passes_, samples, grids.id_count(),
-                                                       is_of_tiles ? cache.tile_px : 0));
+    visibility::FilledCache filled =
+        cache.cache == scene::ShadingCache::fifo
+            ? visibility::fill_buckets(passes_, samples, cache.entries)
+            : visibility::fill_tables(passes_, samples, grids.id_count(), is_of_tiles ? cache.tile_px : 0);
+    counts_.push_back(filled.counts);
+    return std::move(filled.replay);
 }
 
 nlohmann::ordered_json GlVisibility::json() const {

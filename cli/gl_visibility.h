@@ -11,7 +11,7 @@
 
 namespace aftershade::cli {
 
-/// Traces ids and resolves their light with GL, and has its caches count them too; or lights every sample.
+/// Traces ids, fills caches with them and resolves their light with GL; or lights every sample.
 /// [the thread that made it]
 class GlVisibility {
 public:
@@ -24,8 +24,8 @@ public:
     nlohmann::ordered_json json() const;
 
 private:
-    void count(const scene::SampleIds& samples, const scene::ShadingGrids& grids,
-               const scene::ShadingCacheSettings& cache);
+    scene::CacheReplay fill(const scene::SampleIds& samples, const scene::ShadingGrids& grids,
+                            const scene::ShadingCacheSettings& cache);
 
     gpu::Context context_;
     visibility::Passes passes_;

@@ -10,7 +10,6 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
-#include "framework/base/option.h"
 #include "framework/base/side_file.h"
 #include "framework/capture/capture_writer.h"
 #include "framework/capture/light.h"

@@ -50,39 +50,6 @@ std::vector<float> sums_of_pixels(const SampleIds& addresses, const ShareOf& sha
     return of_pixel;
 }
 
-/// The shadings of a picture as they are made and used.
-class Shadings {
-public:
-    explicit Shadings(const SampleIds& samples) : samples_(samples) {
-        replay_.addresses.assign(samples.ids.size(), kNoShading);
-    }
-
-    std::uint32_t add(std::uint32_t id) {
-        uses_.push_back(0);
-        replay_.ids.push_back(id);
-        return std::uint32_t(uses_.size()) - 1;
-    }
-    void use(std::uint32_t address, std::size_t sample) {
-        ++uses_[address];
-        replay_.addresses[sample] = address;
-    }
-    CacheReplay replay(std::uint64_t cache_bytes) && {
-        replay_.shadings = uses_.size();
-        replay_.bytes = cache_bytes;
-        for (const std::uint32_t uses : uses_) replay_.requests += uses;
-        SampleIds addresses = samples_;
-        addresses.ids = replay_.addresses;
-        replay_.of_pixel =
-            sums_of_pixels(addresses, [&](std::uint32_t address) { return 1.0f / float(uses_[address]); });
-        return std::move(replay_);
-    }
-
-private:
-    const SampleIds& samples_;
-    std::vector<std::uint32_t> uses_;
-    CacheReplay replay_;
-};
-
 /// A cache has entry_of(id), an address that is kNoShading where the id is new; begin_tile(); and bytes().
 template <class Cache>
 CacheReplay replay_with(Cache cache, const SampleIds& samples, int tile_px) {
@@ -176,6 +143,32 @@ std::vector<float> shadings_of_pixels(const SampleIds& addresses, std::span<cons
     return sums_of_pixels(addresses, [&](std::uint32_t address) {
         return counts[address] ? 1.0f / float(uses[address]) : 0.0f;
     });
+}
+
+Shadings::Shadings(const SampleIds& samples) : samples_(samples) {
+    replay_.addresses.assign(samples.ids.size(), kNoShading);
+}
+
+std::uint32_t Shadings::add(std::uint32_t id) {
+    uses_.push_back(0);
+    replay_.ids.push_back(id);
+    return std::uint32_t(uses_.size()) - 1;
+}
+
+void Shadings::use(std::uint32_t address, std::size_t sample) {
+    ++uses_[address];
+    replay_.addresses[sample] = address;
+}
+
+CacheReplay Shadings::replay(std::uint64_t cache_bytes) && {
+    replay_.shadings = uses_.size();
+    replay_.bytes = cache_bytes;
+    for (const std::uint32_t uses : uses_) replay_.requests += uses;
+    SampleIds addresses = samples_;
+    addresses.ids = replay_.addresses;
+    replay_.of_pixel =
+        sums_of_pixels(addresses, [&](std::uint32_t address) { return 1.0f / float(uses_[address]); });
+    return std::move(replay_);
 }
 
 CacheReplay replay(const SampleIds& samples, const ShadingCacheSettings& settings) {

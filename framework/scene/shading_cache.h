@@ -59,6 +59,23 @@ struct CacheReplay {
 /// Shadings of each pixel: each that counts, by its address, is divided among the samples that used it.
 std::vector<float> shadings_of_pixels(const SampleIds& addresses, std::span<const char> counts);
 
+/// The shadings of a picture as a cache makes and uses them.
+class Shadings {
+public:
+    /// `samples` must outlive this.
+    explicit Shadings(const SampleIds& samples);
+    /// Its address.
+    std::uint32_t add(std::uint32_t id);
+    std::uint32_t id_of(std::uint32_t address) const { return replay_.ids[address]; }
+    void use(std::uint32_t address, std::size_t sample);
+    CacheReplay replay(std::uint64_t cache_bytes) &&;
+
+private:
+    const SampleIds& samples_;
+    std::vector<std::uint32_t> uses_;
+    CacheReplay replay_;
+};
+
 /// Samples come tile by tile, the pixels of a tile row by row.
 CacheReplay replay(const SampleIds& samples, const ShadingCacheSettings& settings);
 

@@ -173,7 +173,7 @@ Image rate_image(const SceneRenderer& renderer, const std::vector<float>& of_pix
 
 VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGrids& grids, int frame,
                                   const VisibilitySettings& settings, const Traced& traced,
-                                  const LightResolver& resolve, KeptShadings* kept) {
+                                  const VisibilityPasses& passes, KeptShadings* kept) {
     SampleIds samples{traced.ends, renderer.width_px(), renderer.height_px(), settings.samples};
     AllIds all;
     if (traced.lists) {
@@ -181,7 +181,8 @@ VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGr
         samples.ids = all.ids;
         samples.first = all.first;
     }
-    CacheReplay replayed = replay(samples, settings.cache);
+    CacheReplay replayed =
+        traced.lists || kept ? replay(samples, settings.cache) : passes.fill(samples, grids, settings.cache);
     SampleIds addresses = samples;
     addresses.ids = replayed.addresses;
     const TransparentLists* lists = traced.lists ? &*traced.lists : nullptr;
@@ -196,7 +197,7 @@ VisibilityPicture render_memoised(const SceneRenderer& renderer, const ShadingGr
         report.bytes.kept = kept->bytes();
     } else {
         picture.color = lists ? blend(renderer, shade_all(renderer, grids, replayed.ids), addresses, lists)
-                              : resolve(renderer, grids, replayed.ids, addresses);
+                              : passes.resolve(renderer, grids, replayed.ids, addresses);
     }
     picture.shading_rate = rate_image(renderer, replayed.of_pixel);
     report.frame = frame;
@@ -345,7 +346,7 @@ VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
     if (settings.transparency.transparency == Transparency::lists)
         traced = trace_lists(renderer, grids, frame, settings);
     else traced.ends = passes.trace(renderer, grids, frame, settings);
-    return render_memoised(renderer, grids, frame, settings, traced, passes.resolve, kept);
+    return render_memoised(renderer, grids, frame, settings, traced, passes, kept);
 }
 
 }  // namespace aftershade::scene

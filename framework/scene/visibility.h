@@ -97,6 +97,10 @@ Image resolve_light(const SceneRenderer& renderer, const ShadingGrids& grids,
 using LightResolver = std::function<Image(const SceneRenderer& renderer, const ShadingGrids& grids,
                                           std::span<const std::uint32_t> ids, const SampleIds& addresses)>;
 
+/// replay(), or what does the same elsewhere.
+using CacheFiller = std::function<CacheReplay(const SampleIds& samples, const ShadingGrids& grids,
+                                              const ShadingCacheSettings& settings)>;
+
 /// Light at every sample, by pixel.
 struct LitSamples {
     LitSamples(int width_px, int height_px);
@@ -112,6 +116,8 @@ using SampleLighter =
 /// The parts of Visibility::memoised without lists, and of the others.
 struct VisibilityPasses {
     IdTracer trace = trace_ids;
+    CacheFiller fill = [](const SampleIds& samples, const ShadingGrids&,
+                          const ShadingCacheSettings& settings) { return replay(samples, settings); };
     LightResolver resolve = resolve_light;
     SampleLighter light = light_samples;
 };
@@ -120,7 +126,8 @@ struct VisibilityPasses {
 /// the count, and the time. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
 /// Transparency::sorted is for the others. `kept` is for Visibility::memoised with ShadingCache::global; it
 /// has the samples of the frames that were rendered with it before, and then of this one. Its light does not
-/// come from passes.resolve.
+/// come from passes.resolve, nor its addresses
+/// from passes.fill.
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const VisibilityPasses& passes = {},
                                     KeptShadings* kept = nullptr);

@@ -32,7 +32,8 @@ struct CacheSettings {
     std::uint32_t sample_count = 0;
     std::uint32_t tile_px = 0;
     std::uint32_t slots = 0;
-    std::array<std::uint32_t, 3> unused{};
+    std::uint32_t shading_count = 0;
+    std::array<std::uint32_t, 2> unused{};
 };
 
 struct FillSettings {
@@ -70,13 +71,21 @@ public:
         : passes_(passes), cache_(std::move(cache)), executor_(executor_of(passes, make_graph(pixels))) {}
 
     void empty_tables() { passes_.run(executor_, {0, requests_}); }
-    CacheCounts request(std::span<const std::uint32_t> ids) {
+    CacheCounts request(std::span<const std::uint32_t> ids, std::uint64_t earlier_shadings) {
+        cache_.settings.shading_count = std::uint32_t(earlier_shadings);
         cache_.settings.pixel_count = std::uint32_t(ids.size()) / cache_.settings.sample_count;
         set(executor_, ids_, ids);
         executor_.set_uniforms(requests_, 0, bytes_of(cache_.settings));
         passes_.run(executor_, {requests_, requests_ + 1});
         const std::vector<std::uint32_t> found = values_of<std::uint32_t>(executor_, counts_);
         return {found[0], std::uint64_t(found[1]) + found[2], found[2]};
+    }
+    /// Of the samples that asked last.
+    std::vector<std::uint32_t> places() { return values_of<std::uint32_t>(executor_, places_); }
+    std::uint64_t bytes() const {
+        std::uint64_t words = 0;
+        for (const Table& table : cache_.tables) words += table.words;
+        return words * sizeof(std::uint32_t);
     }
 
 private:
@@ -95,39 +104,84 @@ private:
             const graph::BufferHandle emptied = graph.add_pass(std::move(fill)).buffers.front();
             requests.buffers.push_back({emptied, table.binding, Access::read_write});
         }
+        requests.buffers.push_back(
+            {graph.create_buffer("places", {pixels * cache_.settings.sample_count * sizeof(std::uint32_t)}),
+             4, Access::write});
+        const std::size_t places = requests.buffers.size() - 1;
         const std::vector<std::uint32_t> zeros(3);
         requests.buffers.push_back(
             {graph.create_buffer("counts", {zeros.size() * sizeof(std::uint32_t)}, zeros), 2,
              Access::read_write});
         requests_ = graph.pass_count();
-        counts_ = graph.add_pass(std::move(requests)).buffers.back();
+        const graph::Written written = graph.add_pass(std::move(requests));
+        places_ = written.buffers[places];
+        counts_ = written.buffers.back();
+        graph.keep(places_);
         graph.keep(counts_);
         return graph;
     }
 
     Passes& passes_;
     Cache cache_;
-    graph::BufferHandle ids_, counts_;
+    graph::BufferHandle ids_, places_, counts_;
     int requests_ = 0;
     graph::Executor executor_;  // made of all the above
 };
 
-CacheCounts count_in_bands(Passes& passes, const scene::SampleIds& samples, Cache cache, const Bands& bands) {
+/// Addresses of light by places of tables.
+class Addresses {
+public:
+    explicit Addresses(const scene::SampleIds& samples) : samples_(samples), shadings_(samples) {}
+
+    void forget_places() { of_place_.clear(); }
+    /// Of the samples from `first` on. What another invocation has put into a place meanwhile is shaded
+    /// again.
+    void add(std::size_t first, std::size_t count, std::span<const std::uint32_t> places) {
+        for (std::size_t i = 0; i < count; ++i)
+            if (const std::uint32_t id = samples_.ids[first + i]; id != kNoShading)
+                shadings_.use(address_of(id, places[i]), first + i);
+    }
+    scene::CacheReplay replay(std::uint64_t bytes) { return std::move(shadings_).replay(bytes); }
+
+private:
+    std::uint32_t address_of(std::uint32_t id, std::uint32_t place) {
+        if (place == kNoShading) return shadings_.add(id);
+        if (place >= of_place_.size()) of_place_.resize(std::size_t(place) + 1, kNoShading);
+        std::uint32_t& address = of_place_[place];
+        if (address == kNoShading) address = shadings_.add(id);
+        return shadings_.id_of(address) == id ? address : shadings_.add(id);
+    }
+
+    const scene::SampleIds& samples_;
+    scene::Shadings shadings_;
+    std::vector<std::uint32_t> of_place_;
+};
+
+FilledCache fill_in_bands(Passes& passes, const scene::SampleIds& samples, Cache cache, const Bands& bands) {
     const auto width = std::size_t(samples.width_px), count = std::size_t(samples.samples);
     cache.settings.width_px = std::uint32_t(width);
     cache.settings.sample_count = std::uint32_t(count);
-    CacheCounts counts;
+    FilledCache filled;
+    CacheCounts& counts = filled.counts;
+    Addresses addresses(samples);
     const bool has_tables_of_bands = cache.settings.tile_px > 0;
     CacheGraph graph(passes, std::move(cache), width * std::size_t(bands.rows));
     bands.for_each([&](int first, int rows) {
-        if (first == 0 || has_tables_of_bands) graph.empty_tables();
-        const CacheCounts own = graph.request(
-            samples.ids.subspan(std::size_t(first) * width * count, std::size_t(rows) * width * count));
+        if (first == 0 || has_tables_of_bands) {
+            graph.empty_tables();
+            addresses.forget_places();
+        }
+        const std::size_t first_sample = std::size_t(first) * width * count,
+                          of_band = std::size_t(rows) * width * count;
+        const CacheCounts own =
+            graph.request(samples.ids.subspan(first_sample, of_band), counts.shadings - counts.overflows);
+        addresses.add(first_sample, of_band, graph.places());
         counts.requests += own.requests;
         counts.shadings += own.shadings;
         counts.overflows += own.overflows;
     });
-    return counts;
+    filled.replay = addresses.replay(graph.bytes());
+    return filled;
 }
 
 std::size_t bytes_of_row(const scene::SampleIds& samples) {
@@ -136,8 +190,8 @@ std::size_t bytes_of_row(const scene::SampleIds& samples) {
 
 }  // namespace
 
-CacheCounts count_shadings(Passes& passes, const scene::SampleIds& samples, std::uint32_t id_count,
-                           int tile_px, std::size_t max_buffer_bytes) {
+FilledCache fill_tables(Passes& passes, const scene::SampleIds& samples, std::uint32_t id_count, int tile_px,
+                        std::size_t max_buffer_bytes) {
     const int step = std::max(tile_px, 1);
     const auto width = std::size_t(samples.width_px), side = std::size_t(step);
     Cache cache{"requests", visibility_cache_shader(), {}, {}};
@@ -155,18 +209,20 @@ CacheCounts count_shadings(Passes& passes, const scene::SampleIds& samples, std:
                       step, max_buffer_bytes);
     if (tile_px > 0) tables *= std::uint64_t((bands.rows + step - 1) / step);
     cache.tables = {{"table", 1, std::uint32_t(tables * cache.settings.slots), kNoShading}};
-    return count_in_bands(passes, samples, std::move(cache), bands);
+    return fill_in_bands(passes, samples, std::move(cache), bands);
 }
 
-CacheCounts count_shadings_in_buckets(Passes& passes, const scene::SampleIds& samples, int entries,
-                                      std::size_t max_buffer_bytes) {
+FilledCache fill_buckets(Passes& passes, const scene::SampleIds& samples, int entries,
+                         std::size_t max_buffer_bytes) {
     Cache cache{"bucket_requests", visibility_bucket_shader(), {}, {}};
     const std::uint32_t buckets =
         std::bit_ceil(std::uint32_t(entries + kPlacesOfBucket - 1) / kPlacesOfBucket);
     cache.settings.slots = buckets;
-    cache.tables = {{"keys", 1, buckets * kPlacesOfBucket, kNoShading}, {"buckets", 3, buckets * 2, 0}};
+    cache.tables = {{"keys", 1, buckets * kPlacesOfBucket, kNoShading},
+                    {"buckets", 3, buckets * 2, 0},
+                    {"addresses", 5, buckets * kPlacesOfBucket, kNoShading}};
     const Bands bands(samples.width_px, samples.height_px, bytes_of_row(samples), 1, max_buffer_bytes);
-    return count_in_bands(passes, samples, std::move(cache), bands);
+    return fill_in_bands(passes, samples, std::move(cache), bands);
 }
 
 }  // namespace aftershade::visibility

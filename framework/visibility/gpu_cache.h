@@ -17,14 +17,20 @@ struct CacheCounts {
     std::uint64_t overflows = 0;  ///< requests that found no place in their table, or no turn at their bucket
 };
 
-/// Shadings of a cache that keeps all: one for the picture, or with `tile_px` above 0 one for each tile.
-/// `ids` are below `id_count` or kNoShading.
-CacheCounts count_shadings(Passes& passes, const scene::SampleIds& samples, std::uint32_t id_count,
-                           int tile_px, std::size_t max_buffer_bytes = kMaxBufferBytes);
+struct FilledCache {
+    CacheCounts counts;
+    /// Samples fetch the light that the cache has for them; overflows, light of their own.
+    scene::CacheReplay replay;
+};
 
-/// Shadings of a cache of at least `entries` ids in buckets of four, first in, first out. Which requests are
-/// hits depends on the order in which invocations run.
-CacheCounts count_shadings_in_buckets(Passes& passes, const scene::SampleIds& samples, int entries,
-                                      std::size_t max_buffer_bytes = kMaxBufferBytes);
+/// A cache that keeps all: one for the picture, or with `tile_px` above 0 one for each tile. `ids` are below
+/// `id_count` or kNoShading.
+FilledCache fill_tables(Passes& passes, const scene::SampleIds& samples, std::uint32_t id_count, int tile_px,
+                        std::size_t max_buffer_bytes = kMaxBufferBytes);
+
+/// A cache of at least `entries` ids in buckets of four, first in, first out. Which requests are hits depends
+/// on the order in which invocations run.
+FilledCache fill_buckets(Passes& passes, const scene::SampleIds& samples, int entries,
+                         std::size_t max_buffer_bytes = kMaxBufferBytes);
 
 }  // namespace aftershade::visibility

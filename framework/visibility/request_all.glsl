@@ -1,4 +1,4 @@
-// Asks the cache's request() for the ids of one pixel.
+// Asks the cache's request() where the light of one pixel's ids lies.
 void main() {
     uint pixel = gl_GlobalInvocationID.x;
     if (pixel >= pixel_count) return;
@@ -10,9 +10,8 @@ void main() {
     uint own = 0u;
     for (uint i = 0u; i < sample_count; ++i) {
         uint id = ids[pixel * sample_count + i];
-        if (id == kNoShading) continue;
-        ++own;
-        request(id, first_slot);
+        if (id != kNoShading) ++own;
+        places[pixel * sample_count + i] = id == kNoShading ? kNoShading : request(id, first_slot);
     }
     atomicAdd(requests, own);
 }

@@ -11,7 +11,9 @@ layout(std140, binding = 0) uniform Settings {
     uint sample_count;
     uint tile_px;       // 0: one table for the picture
     uint slots;         // of a table, or buckets; a power of two
+    uint shading_count; // of earlier bands, in buckets
 };
+layout(std430, binding = 4) writeonly buffer Places { uint places[]; };  // of each sample's light; kNoShading: it has none in the cache
 
 const uint kNoShading = 0xffffffffu;
 

@@ -149,10 +149,10 @@ TEST_P(VisibilityOn, CountsTheShadingsThatASetCounts) {
         all.insert(found.on_gpu[i]);
         of_tiles.insert({pixel % kWidth_px / 16, pixel / kWidth_px / 16, found.on_gpu[i]});
     }
-    const CacheCounts global = count_shadings(passes, samples, found.id_count, 0);
+    const CacheCounts global = fill_tables(passes, samples, found.id_count, 0).counts;
     EXPECT_EQ(global.shadings, all.size());
     EXPECT_EQ(global.overflows, 0u);
-    const CacheCounts tiles = count_shadings(passes, samples, found.id_count, 16);
+    const CacheCounts tiles = fill_tables(passes, samples, found.id_count, 16).counts;
     EXPECT_EQ(tiles.shadings, of_tiles.size());
     EXPECT_EQ(tiles.overflows, 0u);
     EXPECT_EQ(tiles.requests, scene::replay(samples, {}).requests);
@@ -170,8 +170,8 @@ TEST_P(VisibilityOn, IsTheSameInBandsOfRows) {
     EXPECT_EQ(trace_ids(passes, renderer, grids, 4, settings, 20 * kWidth_px * 32), whole);
     const scene::SampleIds samples{whole, kWidth_px, kHeight_px, 4};
     for (const int tile_px : {0, 8}) {
-        const CacheCounts once = count_shadings(passes, samples, grids.id_count(), tile_px);
-        const CacheCounts in_bands = count_shadings(passes, samples, grids.id_count(), tile_px, 150000);
+        const CacheCounts once = fill_tables(passes, samples, grids.id_count(), tile_px).counts;
+        const CacheCounts in_bands = fill_tables(passes, samples, grids.id_count(), tile_px, 150000).counts;
         EXPECT_EQ(in_bands.overflows, 0u);
         EXPECT_EQ(in_bands.shadings, once.shadings);
         EXPECT_EQ(in_bands.requests, once.requests);
@@ -183,7 +183,7 @@ TEST_P(VisibilityOn, EndsWithCountedOverflowsWhereATableIsTooSmall) {
     // Half a million ids are said to be 64: all places are taken, and each attempt ends.
     std::vector<std::uint32_t> ids(std::size_t(64) * 64 * 128);
     for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = std::uint32_t(i);
-    const CacheCounts counts = count_shadings(passes, {ids, 64, 128, 64}, 64, 0);
+    const CacheCounts counts = fill_tables(passes, {ids, 64, 128, 64}, 64, 0).counts;
     EXPECT_EQ(counts.requests, ids.size());
     EXPECT_EQ(counts.shadings, ids.size());
     EXPECT_EQ(counts.overflows, ids.size() - 128);
@@ -198,17 +198,17 @@ TEST_P(VisibilityOn, KeepsIdsInLockedBucketsAndEndsWhateverTheirNumber) {
     all.erase(kNoShading);
     const std::uint64_t requests = scene::replay(samples, {}).requests;
     // Sixteen places for each id: no bucket drops any.
-    const CacheCounts roomy = count_shadings_in_buckets(passes, samples, int(16 * all.size()));
+    const CacheCounts roomy = fill_buckets(passes, samples, int(16 * all.size())).counts;
     EXPECT_EQ(roomy.requests, requests);
     EXPECT_LE(roomy.shadings - roomy.overflows, all.size());
     EXPECT_GE(roomy.shadings, all.size());
     EXPECT_LT(double(roomy.overflows), 0.001 * double(requests));
     const scene::ShadingCacheSettings fifo{scene::ShadingCache::fifo, 16, 1024};
-    const CacheCounts tight = count_shadings_in_buckets(passes, samples, 1024);
+    const CacheCounts tight = fill_buckets(passes, samples, 1024).counts;
     EXPECT_EQ(tight.requests, requests);
     EXPECT_GT(tight.shadings, all.size());
     EXPECT_LT(double(tight.shadings), 2.5 * double(scene::replay(samples, fifo).shadings));
-    const CacheCounts one = count_shadings_in_buckets(passes, samples, 1);
+    const CacheCounts one = fill_buckets(passes, samples, 1).counts;
     EXPECT_EQ(one.requests, requests);
     EXPECT_LE(one.shadings, requests);
     EXPECT_GT(one.shadings, tight.shadings);
