@@ -34,8 +34,6 @@ std::unique_ptr<BoundLook> bind_look(const RunArguments& options, Diagnostics& d
     return bound;
 }
 
-namespace fs = std::filesystem;
-
 InputFiles run_inputs(const BoundLook& bound, const Sequence& sequence, const Diagnostics& faults) {
     InputFiles inputs;
     inputs.add(faults.documents());
@@ -50,7 +48,7 @@ bool check_run_outputs(const RunArguments& options, const OutputOptions& outputs
         return inputs.check_output({word + " " + file}, file, diagnostics);
     };
     check("--history-out", options.history_out);
-    inputs.add(fs::path(options.history_in));
+    inputs.add(std::filesystem::path(options.history_in));
     check_outputs(outputs, sequence, inputs, diagnostics);
     check("--graph", options.graph);
     check("--telemetry-plot", options.telemetry_plot);

@@ -1,4 +1,4 @@
-// A look of the command line, bound to its effects.
+// A look of the command line, bound to its effects, and the files that its run reads and writes.
 #pragma once
 
 #include <memory>

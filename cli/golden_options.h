@@ -69,13 +69,11 @@ void add_approver_option(CLI::App& app, GoldenOptions& options);
 void add_any_renderer_option(CLI::App& app, GoldenOptions& options);
 CLI::Option* add_page_limit(CLI::App& app, GoldenOptions& options);
 
-/// Each adds a verb to `golden` and returns what that verb does: decisions of a file or of commits, what a
-/// pull request shows of a report, why a case differs, a suite of one case whose tolerance is measured, and
-/// the report of a suite as a page to review it with.
-std::function<ExitCode()> add_golden_apply(CLI::App& golden);
-std::function<ExitCode()> add_golden_comment(CLI::App& golden);
-std::function<ExitCode()> add_golden_explain(CLI::App& golden);
-std::function<ExitCode()> add_golden_init(CLI::App& golden);
-std::function<ExitCode()> add_golden_serve(CLI::App& golden);
+// Each adds a verb to `golden` and returns what runs when it is chosen.
+std::function<ExitCode()> add_golden_apply(CLI::App& golden);    ///< approves by a file or by commits
+std::function<ExitCode()> add_golden_comment(CLI::App& golden);  ///< prints a report for a pull request
+std::function<ExitCode()> add_golden_explain(CLI::App& golden);  ///< says why a case differs
+std::function<ExitCode()> add_golden_init(CLI::App& golden);     ///< writes a suite of one case
+std::function<ExitCode()> add_golden_serve(CLI::App& golden);    ///< serves a page to review a report with
 
 }  // namespace aftershade::cli

@@ -93,7 +93,8 @@ void check_size(const Window& window, const std::string& role, int width, int he
 
 void list_roles(aftershade::Capture& capture) {
     capture.header.roles.clear();
-    for (const auto& [role, image] : capture.images) capture.header.roles.push_back(role.name());
+    for (const auto& [role, image] : capture.images)
+        if (!role.is_coverage()) capture.header.roles.push_back(role.name());
 }
 
 }  // namespace
@@ -197,7 +198,8 @@ bool Capture::has_image(const std::string& role) const noexcept {
 
 std::vector<std::string> Capture::roles() const {
     std::vector<std::string> roles;
-    for (const auto& [role, image] : data_->capture.images) roles.push_back(role.name());
+    for (const auto& [role, image] : data_->capture.images)
+        if (!role.is_coverage()) roles.push_back(role.name());
     return roles;
 }
 

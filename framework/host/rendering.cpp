@@ -40,6 +40,11 @@ void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture)
     std::vector<std::string> needs;
     for (const MissingRole& missing : find_missing_roles(pipeline, capture.header))
         needs.push_back(need_of(missing));
+    // Files have a coverage by Cryptomattes, too.
+    if (!capture.images.contains(kObjectIdRole))
+        for (const RoleId& role : pipeline.capture_roles())
+            if (role.is_coverage() && !capture.images.contains(role))
+                needs.push_back("the " + role.name() + " needs the role 'object_id'");
     if (needs.empty()) return;
     const auto& roles = capture.header.roles;
     fail_at(ErrorKind::capture, "capture",

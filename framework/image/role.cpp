@@ -1,5 +1,6 @@
 #include "framework/image/role.h"
 
+#include <cassert>
 #include <charconv>
 #include <limits>
 #include <system_error>
@@ -151,12 +152,14 @@ RoleId::RoleId(std::string name) : name_(std::move(name)) {
     int layer = -1;
     const char* const end = name_.data() + colon;
     const auto read = std::from_chars(name_.data() + kLayer.size(), end, layer);
-    if (read.ec != std::errc() || read.ptr != end || layer < 0) return;
+    constexpr int kMost = std::numeric_limits<int>::max() - 1;  // layers are counted, from 1
+    if (read.ec != std::errc() || read.ptr != end || layer < 0 || layer > kMost) return;
     layer_ = layer;
     layer_prefix_ = colon + 1;
 }
 
 RoleId RoleId::coverage(std::span<const TableKey> objects) {
+    assert(!objects.empty());
     std::vector<std::string> entries;
     for (const TableKey& key : objects) entries.push_back(format_object_keys({&key, 1}));
     RoleId role("coverage of " + joined(entries, ", "));

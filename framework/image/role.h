@@ -43,7 +43,7 @@ inline constexpr const char* kAlbedoRole = "albedo";
 inline constexpr const char* kObjectIdRole = "object_id";
 inline constexpr const char* kMaskRole = "mask";
 
-/// A role is spelled by name everywhere ("color", "velocity_next", "aov:mist"); this is its contract.
+/// The contract of a role, which documents spell by name ("color", "velocity_next", "aov:mist").
 struct ChannelRole {
     std::string name;
     int channels = 0;
@@ -61,8 +61,8 @@ struct ChannelRole {
     bool has_optional_alpha() const { return kind == RoleKind::light && channels == 4; }
 };
 
-/// The name of one image of a capture, as documents spell it ("color", "aov:mist"), with what it says: the
-/// layer that the image is of, and the objects whose share of each pixel it holds.
+/// Which image of a capture: a role as documents spell it ("color", "aov:mist"), the layer that it is of, and
+/// the objects whose share of each pixel it holds, which no document can spell.
 class RoleId {
 public:
     /// "layer1:depth" is of a layer; any other name is of the whole picture.
@@ -83,7 +83,7 @@ public:
     bool is_coverage() const { return !objects_.empty(); }
     const std::vector<TableKey>& objects() const { return objects_; }
 
-    /// By name, which says all.
+    /// By name. A role made of the name of a coverage equals it, but has no objects.
     bool operator==(const RoleId& other) const { return name_ == other.name_; }
     auto operator<=>(const RoleId& other) const { return name_ <=> other.name_; }
 

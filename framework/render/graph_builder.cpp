@@ -361,7 +361,10 @@ void GraphBuilder::add_mix(StepBuild& build) {
         graph::Pass pass;
         pass.name = step.name + "." + name + ".mix";
         std::vector<std::string> defines;
-        const auto mask_image = [&](const RoleId& role) { return on_grid(import(role), {-1, role.name()}); };
+        // A coverage is resampled as a mask is; its name alone is not a role.
+        const auto mask_image = [&](const RoleId& role) {
+            return on_grid(import(role), {-1, role.is_coverage() ? kMaskRole : role.name()});
+        };
         const graph::TextureHandle before = on_grid(resolve(source), source);
         pass.reads = {{before, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(before)},
                       {build.textures.at(name), 1}};

@@ -113,7 +113,7 @@ void PictureMaker::adopt(Scaled& scaled, const PictureRequest& request, Pipeline
 bool PictureMaker::load(Scaled& scaled, const PictureRequest& request) {
     const Pipeline& pipeline = *scaled.pipeline;
     std::vector<RoleId> reads = pipeline.capture_roles();
-    std::string key = joined_roles(reads) + "objects\n" + joined(pipeline.object_names(), "\n") + "\n";
+    std::string key = joined_roles(reads) + "objects\n" + joined(pipeline.object_names(), "\n", "\n") + "\n";
     for (const int offset : pipeline.neighbour_offsets())
         key += "offset " + std::to_string(offset) + "\n" + joined_roles(pipeline.neighbour_roles(offset));
     key += std::to_string(pipeline.last_accumulating_step() >= 0);
