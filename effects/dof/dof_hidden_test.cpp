@@ -351,5 +351,37 @@ TEST(DofHidden, AnEdgeOfWhatIsInFocusStaysSharpBesideAWire) {
         }
 }
 
+// Short chords across the pole all have unlike ends; those along the edge alone say on which side of it a
+// pixel lies.
+TEST(DofHidden, AnEdgeThatCrossesAPoleAtASmallAngleGoesOnBehindIt) {
+    constexpr int kEdge = kWidth / 2;
+    constexpr double kSlope = 1.0 / 6, kHalfWidthPx = 1.5, kPole = 0.05;
+    const auto beside = [](int x) { return x < kEdge ? 0.8f : 0.2f; };
+    const auto off_pole = [](int x, int y) { return x + 0.5 - kEdge - kSlope * (y + 0.5 - kHeight / 2); };
+    Capture capture =
+        make_capture({.width = kWidth, .height = kHeight, .background_depth_m = kApertureFocusM}, 0);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const bool is_pole = std::abs(off_pole(x, y)) < kHalfWidthPx;
+            for (int c = 0; c < 3; ++c)
+                capture.images["color"].at(x, y, c) = is_pole ? float(kPole) : beside(x);
+            if (is_pole) capture.images["depth"].at(x, y, 0) = kApertureFocusM / 2;
+        }
+    const Image out = blurred(capture);
+    const double across = 1 / std::sqrt(1 + kSlope * kSlope) / kRadiusPx;
+    double error = 0;
+    int count = 0;
+    for (int y = 24; y < 40; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const double off = off_pole(x, y);
+            if (std::abs(off) >= kHalfWidthPx) continue;
+            const double opacity =
+                disk_left_of((kHalfWidthPx - off) * across) - disk_left_of((-kHalfWidthPx - off) * across);
+            error += std::abs(out.at(x, y, 0) - opacity * kPole - (1 - opacity) * double(beside(x)));
+            ++count;
+        }
+    EXPECT_LT(error / count, 0.125);  // by 12 chords of any length it was 0.154
+}
+
 }  // namespace
 }  // namespace aftershade::test::dof

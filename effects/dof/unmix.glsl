@@ -51,6 +51,18 @@ Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across) {
     return Mixture(max(own - share * difference, min(own, self)), share, length_2);
 }
 
+// Whether what lies across reaches a pixel of the surface from one of its sides.
+bool is_beside(ivec2 p, ivec2 to, float coc_px) {
+    ivec2 side = ivec2(-to.y, to.x);
+    return is_across(p + side, coc_px) || is_across(p - side, coc_px);
+}
+
+// Whether a colour differs from both of its neighbours'.
+bool is_other(vec3 color, vec3 a, vec3 b, vec3 across) {
+    vec3 off_a = color - a, off_b = color - b, whole = across - a;
+    return min(dot(off_a, off_a), dot(off_b, off_b)) > kSameColor * dot(whole, whole);
+}
+
 // As the texture `mixture` keeps them.
 const float kNoEdge = 0.0, kEdge = 0.5, kMixture = 1.0;
 
@@ -81,8 +93,12 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
         }
         if (differ(self, across)) kind = kEdge;
         Mixture mixture = mixture_of(own, self, color_inside(p - 3 * to), across);
-        // An edge of the surface's own may lie that near.
-        if (mixture.share == 0.0 && !is_across(p - to, coc_px)) mixture = mixture_of(own, color_inside(p - to), self, across);
+        // An edge of the surface's own may lie that near. Beyond the silhouette's own pixels nothing is mixed, so that another colour
+        // than both of its neighbours' is such an edge.
+        vec3 beside = color_inside(p - to);
+        bool is_own = !is_across(p - to, coc_px);
+        if (is_own && (mixture.share == 0.0 || !is_beside(p - to, to, coc_px) && is_other(beside, self, own, across)))
+            mixture = mixture_of(own, beside, self, across);
         if (mixture.share <= best.share) continue;
         best = mixture;
         way = to;
