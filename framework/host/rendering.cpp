@@ -33,24 +33,26 @@ void check_external(gpu::Context& context, const GlTexture& texture, const std::
 }
 
 void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture) {
-    if (!capture.header.path.empty()) {
-        require_capture_roles(pipeline, capture.header);
-        return;
-    }
+    const bool is_of_files = !capture.header.path.empty();
+    if (is_of_files) require_capture_roles(pipeline, capture.header);
+    aftershade::CaptureHeader read = capture.header;
+    read.roles.clear();
+    for (const auto& [role, image] : capture.images)
+        if (!role.is_coverage()) read.roles.push_back(role.name());
     std::vector<std::string> needs;
-    for (const MissingRole& missing : find_missing_roles(pipeline, capture.header))
-        needs.push_back(need_of(missing));
-    // Files have a coverage by Cryptomattes, too.
+    for (const MissingRole& missing : find_missing_roles(pipeline, read)) needs.push_back(need_of(missing));
+    // Files have a coverage by Cryptomattes, too, which is read where the look asks for it.
     if (!capture.images.contains(kObjectIdRole))
         for (const RoleId& role : pipeline.capture_roles())
             if (role.is_coverage() && !capture.images.contains(role))
                 needs.push_back("the " + role.name() + " needs the role 'object_id'");
     if (needs.empty()) return;
-    const auto& roles = capture.header.roles;
+    const std::string them = needs.size() == 1 ? "it" : "them";
     fail_at(ErrorKind::capture, "capture",
             joined(needs, " and ") + "; the capture has " +
-                (roles.empty() ? "no images" : list_of_names(roles, "and")) +
-                (needs.size() == 1 ? " (add it" : " (add them") + " by set_image or set_texture)");
+                (read.roles.empty() ? "no images" : list_of_names(read.roles, "and")) +
+                (is_of_files ? " (add " + them + " to CaptureOptions::roles)"
+                             : " (add " + them + " by set_image or set_texture)"));
 }
 
 void require_same_window(const Capture::Data& capture, const Capture::Data* other, const char* option) {

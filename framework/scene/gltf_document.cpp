@@ -24,7 +24,24 @@ bool file_exists(const std::string& path, void*) {
     return fs::is_regular_file(path, ignored);
 }
 
-/// tinygltf 2.7 takes a plus sign for a blank, which URIs of files do not mean (RFC 3986).
+/// "a%20b" is "a b" (RFC 3986).
+std::string without_percents(const std::string& uri) {
+    std::string text;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        int value = 0;
+        const char *first = uri.data() + i + 1, *last = first + 2;
+        if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(first, last, value, 16).ptr == last) {
+            text += char(value);
+            i += 2;
+        } else {
+            text += uri[i];
+        }
+    }
+    return text;
+}
+
+/// tinygltf 2.7 takes a plus sign for a blank, which URIs of files do not mean (RFC 3986). Any file of such a
+/// name lets the loader go on; read_files_with_plus_signs() finds the right one.
 std::string with_plus_signs(const std::string& path, void*) {
     if (file_exists(path, nullptr) || path.find(' ') == path.npos) return path;
     const fs::path wanted(path);
@@ -92,6 +109,26 @@ std::string folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path().string() : ".";
 }
 
+/// The files that URIs with plus signs name, in place of what the loader found.
+void read_files_with_plus_signs(tinygltf::Model& model, const fs::path& path, bool keeps_images) {
+    std::string folder = folder_of(path);
+    const auto read = [&](const std::string& uri, std::vector<unsigned char>& bytes) {
+        if (uri.starts_with("data:") || uri.find('+') == uri.npos) return;
+        std::string fault;
+        if (!read_whole_file(&bytes, &fault, folder + "/" + without_percents(uri), &folder))
+            fail_gltf(path, fault);
+    };
+    for (tinygltf::Buffer& buffer : model.buffers) {
+        const std::size_t bytes = buffer.data.size();
+        read(buffer.uri, buffer.data);
+        if (buffer.data.size() < bytes)
+            fail_gltf(path, fmt::format("{} has {} bytes, its byteLength is {}", buffer.uri,
+                                        buffer.data.size(), bytes));
+    }
+    for (tinygltf::Image& image : model.images)
+        if (keeps_images && image.bufferView == -1) read(image.uri, image.image);
+}
+
 /// Extensions that change how the geometry is stored or placed, and that are not read.
 void check_extensions(const fs::path& path, const tinygltf::Model& model) {
     for (const std::string& name : model.extensionsRequired) {
@@ -137,28 +174,9 @@ tinygltf::Model load_gltf(const fs::path& path, bool keeps_images) {
     if (!model.asset.version.starts_with("2."))
         fail_gltf(path, fmt::format("is glTF of version '{}', 2.0 is read", model.asset.version));
     check_extensions(path, model);
+    read_files_with_plus_signs(model, path, keeps_images);
     return model;
 }
-
-namespace {
-
-/// "a%20b" is "a b" (RFC 3986).
-std::string without_percents(const std::string& uri) {
-    std::string text;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        int value = 0;
-        const char *first = uri.data() + i + 1, *last = first + 2;
-        if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(first, last, value, 16).ptr == last) {
-            text += char(value);
-            i += 2;
-        } else {
-            text += uri[i];
-        }
-    }
-    return text;
-}
-
-}  // namespace
 
 std::string gltf_file_fault(const fs::path& path, const std::string& uri) {
     std::string folder = folder_of(path), fault;

@@ -70,7 +70,9 @@ private:
             share("the alpha of baseColorFactor", source.pbrMetallicRoughness.baseColorFactor[3]);
         if (source.alphaMode == "BLEND") {
             material.opacity = factor;
-            material.blends = bool(material.maps.base_color);
+            // Exporters write BLEND for textures without alpha, too.
+            const MaterialMap& color = material.maps.base_color;
+            material.blends = color && !color.texture->is_opaque();
         } else if (source.alphaMode == "MASK") {
             if (!(source.alphaCutoff >= 0 && std::isfinite(source.alphaCutoff)))
                 fault(fmt::format("alphaCutoff is {}, not 0 or more", source.alphaCutoff));
@@ -107,7 +109,8 @@ private:
         UvChannel channel{info.texCoord};
         if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end())
             channel = transformed(key, channel, found->second);
-        if (channel.set < 0) fault(fmt::format("{} has texture coordinates set {}", key, channel.set));
+        if (channel.set < 0)
+            fault(fmt::format("{} has texture coordinates set {}, not 0 or more", key, channel.set));
         return {decoded(texture.source, values, sampling_of(place, texture.sampler)), number_of(channel)};
     }
 
@@ -140,8 +143,12 @@ private:
             extension.Has("offset") ? pair_in(place + "offset", extension.Get("offset")) : glm::dvec2(0);
         const double angle_rad =
             extension.Has("rotation") ? number_in(place + "rotation", extension.Get("rotation")) : 0;
-        if (extension.Has("texCoord"))
-            channel.set = int(number_in(place + "texCoord", extension.Get("texCoord")));
+        if (extension.Has("texCoord")) {
+            const double set = number_in(place + "texCoord", extension.Get("texCoord"));
+            if (set != std::floor(set))
+                fault(fmt::format("{}texCoord is {}, not a whole number", place, set));
+            channel.set = int(set);
+        }
         const double c = std::cos(angle_rad), s = std::sin(angle_rad);
         channel.from_set = glm::dmat3x2(scale.x * glm::dvec2(c, -s), scale.y * glm::dvec2(s, c), offset);
         return channel;

@@ -67,6 +67,12 @@ void GltfValues::replace_some(const tinygltf::Model& model, const tinygltf::Acce
                               const Layout& all) {
     if (count_ > kMaxGltfBytes / all.bytes)
         fault(fmt::format("{} has {} values, more than {} bytes", all.name, count_, kMaxGltfBytes));
+    // Zeros cost a file nothing, and the corners of the triangles that a mesh may have are no more than
+    // these.
+    constexpr std::size_t kMostZeros = 12'000'000;
+    if (accessor.bufferView == -1 && count_ > kMostZeros)
+        fault(
+            fmt::format("{} has {} values and no bufferView; the limit is {}", all.name, count_, kMostZeros));
     own_.resize(count_ * all.bytes);
     for (std::size_t i = 0; i < count_ && !bytes_.empty(); ++i)
         std::memcpy(&own_[i * all.bytes], &bytes_[i * stride_], all.bytes);
@@ -80,7 +86,9 @@ void GltfValues::replace_some(const tinygltf::Model& model, const tinygltf::Acce
         component != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
         fault(fmt::format("component type {} is not allowed for indices (use an unsigned integer type)",
                           component));
-    if (sparse.count < 0 || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
+    // Signed in some versions of the loader.
+    if (std::int64_t(sparse.count) < 0 || std::int64_t(sparse.indices.byteOffset) < 0 ||
+        std::int64_t(sparse.values.byteOffset) < 0)
         fault(all.name + " has sparse values with a negative count or byteOffset");
     const auto count = std::size_t(sparse.count);
     const auto index_bytes = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(component)));

@@ -25,7 +25,7 @@ class GltfValues {
 public:
     GltfValues(const std::filesystem::path& path, const tinygltf::Model& model, int index, std::string what,
                std::initializer_list<int> types);
-    GltfValues(GltfValues&&) = default;
+    GltfValues(GltfValues&&) = default;  // the bytes of a copy would be those of the other
 
     std::size_t count() const { return count_; }
 

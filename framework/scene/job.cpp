@@ -14,7 +14,6 @@
 #include "framework/capture/capture_writer.h"
 #include "framework/capture/light.h"
 #include "framework/document/units.h"
-#include "framework/image/role.h"
 #include "framework/scene/rate_image.h"
 #include "framework/scene/samples.h"
 #include "framework/scene/triangulate.h"

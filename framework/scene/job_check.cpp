@@ -97,7 +97,9 @@ void check_job(const Scene& scene, const Job& job, Diagnostics& diagnostics) {
         std::any_of(scene.materials.begin(), scene.materials.end(),
                     [](const Material& material) { return material.scattering.has_value(); });
     if (scattering && scene.has_transparency())
-        fault(Option::truth, "the scene has materials with an \"opacity\" below 1; scattering needs 1",
+        fault(Option::truth,
+              "the scene has materials with an \"opacity\" below 1 or glTF's alphaMode BLEND; scattering "
+              "needs opaque ones",
               "scattering");
     if (scattering && !scatters)
         fault(Option::truth, "no material of the scene has a \"scattering_profile\"", "scattering");

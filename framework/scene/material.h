@@ -90,7 +90,8 @@ Finish finish_at(const Material& material, const TexturePoint& at);
 /// The albedo alone.
 glm::dvec3 albedo_at(const Material& material, const TexturePoint& at);
 double opacity_at(const Material& material, const TexturePoint& at);
-/// Whether the surface has a hole there. That of a point alone, so that its edge is sharp from everywhere.
+/// Whether the surface has a hole there. Its alpha is not filtered, so that a hole's edge is sharp from
+/// everywhere.
 bool is_hole(const Material& material, TexturePoint at);
 
 }  // namespace aftershade::scene

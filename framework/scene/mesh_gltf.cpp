@@ -189,10 +189,12 @@ private:
             const UvChannel& channel = channels[i];
             const std::string name = fmt::format("TEXCOORD_{}", channel.set);
             const auto values = attribute(primitive, place, name.c_str(), TINYGLTF_TYPE_VEC2);
-            if (!values)
-                warnings_.push_back(fmt::format("{}: {} has no {}, which a texture of its material needs",
-                                                path_.string(), place, name));
-            else if (values->count() != count)
+            if (!values) {
+                std::string warning = fmt::format("{}: {} has no {}, which a texture of its material needs",
+                                                  path_.string(), place, name);
+                if (std::ranges::find(warnings_, warning) == warnings_.end())
+                    warnings_.push_back(std::move(warning));
+            } else if (values->count() != count)
                 fail_gltf(path_, fmt::format("{} has {} positions, but {} values of {}", place, count,
                                              values->count(), name));
             const auto own = uvs.end() - std::ptrdiff_t(sources.size());

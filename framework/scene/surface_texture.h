@@ -1,6 +1,7 @@
 // Pictures on surfaces, each with its coarser copies.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -45,6 +46,10 @@ public:
     const std::vector<Level>& levels() const { return levels_; }
     /// The texels of all levels, the finest first; red in the lowest byte, then green, blue and alpha.
     const std::vector<std::uint32_t>& texels() const { return texels_; }
+    /// Whether alpha is 1 everywhere.
+    bool is_opaque() const {
+        return std::ranges::all_of(texels_, [](std::uint32_t texel) { return texel >> 24 == 255; });
+    }
     TexelValues values() const { return values_; }
     const TextureSampling& sampling() const { return sampling_; }
 

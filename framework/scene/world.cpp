@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace aftershade::scene {
@@ -29,13 +30,20 @@ void face(Surface& surface, bool from_behind) {
 Geometry::Geometry(const Scene& scene) : scene_(scene) {
     meshes_.reserve(scene.meshes.size());
     for (const Mesh& mesh : scene.meshes) meshes_.emplace_back(mesh);
+    std::map<int, ObjectAlpha> of_mesh;  // with materials of its own, which all of its objects have
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-        ObjectAlpha& alpha = alphas_.emplace_back();
         const bool own = scene.objects[i].has_mesh_materials;
+        const auto known = own ? of_mesh.find(scene.objects[i].shape.mesh) : of_mesh.end();
+        if (known != of_mesh.end()) {
+            alphas_.push_back(known->second);
+            continue;
+        }
+        ObjectAlpha& alpha = alphas_.emplace_back();
         for (const std::size_t material : scene.materials_of(int(i))) {
             alpha.has_holes = alpha.has_holes || scene.materials[material].alpha_cutoff > 0;
             alpha.is_mixed = alpha.is_mixed || (own && scene.materials[material].is_transparent());
         }
+        if (own) of_mesh[scene.objects[i].shape.mesh] = alpha;
     }
 }
 

@@ -15,7 +15,7 @@
 
 namespace aftershade::scene {
 
-/// What triangles of an object do with light that comes through them, where they differ.
+/// Whether light comes through some of an object's triangles.
 struct ObjectAlpha {
     bool has_holes = false;
     bool is_mixed = false;  ///< opacity goes by the triangle or by a texture
@@ -118,11 +118,10 @@ public:
     /// that it faces away from.
     Shading shade(const Surface& surface, const glm::dvec3& eye, std::span<double> seen = {}) const;
     /// Shading::specular alone, the one part that depends on the eye, to the bit and without rays: `seen` is
-    /// what shade() wrote. The surface has `weights_of_pixel` if its
-    /// material has maps.
+    /// what shade() wrote. The surface has `weights_of_pixel` if its material has maps.
     glm::dvec3 highlights(const Surface& surface, const glm::dvec3& eye, std::span<const double> seen) const;
-    /// Whether any ray that shade() sends from the surface meets one of the boxes. The same of
-    /// `weights_of_pixel`.
+    /// Whether any ray that shade() sends from the surface meets one of the boxes. It has
+    /// `weights_of_pixel` likewise.
     bool light_meets(const Surface& surface, const Bvh& boxes) const;
     /// An object's bounds in world space; empty where there is nothing to see of it.
     Bounds bounds(int object) const;

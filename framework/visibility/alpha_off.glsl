@@ -1,1 +1,2 @@
-const bool kHasAlpha = false;  // Mesa's software GL would run through what that needs at every triangle.
+// Mesa's software GL would run the code of alpha at every triangle.
+const bool kHasAlpha = false;

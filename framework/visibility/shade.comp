@@ -60,8 +60,7 @@ mat2 weights_of_cell(Surface at, vec2 corner) {
 // How much a place of the cell counts: as much as it is opaque.
 float opaque_part(Material material, TexturePoint at) {
     if (!kHasAlpha) return 1.0;
-    if (material.alpha_cutoff > 0.0)
-        return map_at(material.maps.x, texture_point(at.surface, at.weights, mat2(0.0), extra_uvs(at.surface, 0u))).w < material.alpha_cutoff ? 0.0 : 1.0;
+    if (material.alpha_cutoff > 0.0) return is_hole(at.surface, at.weights) ? 0.0 : 1.0;
     return material.blends && material.opacity > 0.0 ? map_at(material.maps.x, at).w : 1.0;
 }
 

@@ -186,6 +186,21 @@ std::vector<Misuse> misuses_of_renders() {
              b.look.render(b.capture);
          },
          Kind::capture, "needs the role 'depth'; the capture has 'color'", "capture"},
+        {"a role that the look needs and reading left out",
+         [](Bench& b) {
+             const std::filesystem::path file = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/gbuffer_0004.exr";
+             b.look.render(Capture::read(b.host, file, {.roles = {"color"}}));
+         },
+         Kind::capture, "needs the role 'depth'; the capture has 'color' (add it to CaptureOptions::roles)",
+         "capture"},
+        {"a mask of objects where no ids are",
+         [](Bench& b) {
+             b.host
+                 .parse_look(R"({ "aftershade": 1, "steps": [ { "effect": "vignette",
+                 "mask": { "object": "ball" } } ] })")
+                 .render(b.capture);
+         },
+         Kind::capture, "the coverage of \"ball\" needs the role 'object_id'", "capture"},
         {"a role that nothing makes", [](Bench& b) { b.look.render(b.capture, {.roles = {"albedo"}}); },
          Kind::capture, "no step makes 'albedo'", "RenderOptions::roles"},
         {"a frame rate of nothing", [](Bench& b) { b.look.render(b.capture, {.fps = 0}); }, Kind::usage,

@@ -31,7 +31,7 @@ TEST(OddScenes, WithTheCameraInATrianglesPlaneHaveFiniteLight) {
 TEST(OddScenes, MayHaveTexturesAndBuffersWithPlusSignsInTheirNames) {
     const TemporaryFolder folder;
     write_text(folder / "oak+a nail.png", png_of({200, 100, 50}));
-    write_text(folder / "oak a nail.txt", "another file");
+    write_text(folder / "oak a nail.png", png_of({1, 2, 3}));
     const File file = textured_quad(kPainted, {.images = R"({"uri": "oak+a%20nail.png"})"});
     write_text(folder / "model.gltf", file.json("a+b.bin"));
     write_text(folder / "a+b.bin", file.buffer());
