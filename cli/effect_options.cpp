@@ -46,7 +46,7 @@ EffectRegistry find_effects(const std::vector<std::string>& paths, Diagnostics& 
     std::vector<std::filesystem::path> folders(paths.begin(), paths.end());
     check_effect_paths(paths, diagnostics);
     folders.push_back(data_path() / "effects");
-    EffectRegistry effects(std::move(folders));
+    EffectRegistry effects(folders);
     effects.warn_of_unreadable(diagnostics);
     effects.warn_of_hidden(diagnostics);
     return effects;

@@ -2,6 +2,7 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,8 +11,6 @@
 #include "framework/base/child_process.h"
 #include "framework/base/error.h"
 #include "framework/base/side_file.h"
-
-extern char** environ;
 
 namespace aftershade::cli {
 

@@ -123,8 +123,8 @@ std::vector<double> plot_ticks(const std::array<double, 2>& range, int count) {
 std::string plot_svg(const std::string& title, const std::string& caption,
                      const std::vector<PlotPanel>& panels) {
     const double column = kLeft + kWidth + kRight, row = kTop + kHeight + kBottom;
-    const double width = column * (panels.size() > 1 ? 2 : 1),
-                 height = kHead + row * double((panels.size() + 1) / 2);
+    const std::size_t rows = (panels.size() + 1) / 2;
+    const double width = column * (panels.size() > 1 ? 2 : 1), height = kHead + row * double(rows);
     std::string out = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
         "{1}\" role=\"img\">\n<title>{2}</title>\n{3}<rect class=\"page\" width=\"{0}\" "
@@ -135,9 +135,11 @@ std::string plot_svg(const std::string& title, const std::string& caption,
         "y=\"46\">{2}</text>\n",
         kLeft, xml_text(title), xml_text(caption));
     if (!panels.empty()) out += legend(panels[0].lines);
-    for (std::size_t i = 0; i < panels.size(); ++i)
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        const std::size_t above = i / 2;
         out +=
-            PanelWriter(panels[i], kLeft + column * double(i % 2), kHead + kTop + row * double(i / 2)).text();
+            PanelWriter(panels[i], kLeft + column * double(i % 2), kHead + kTop + row * double(above)).text();
+    }
     return out + "</svg>\n";
 }
 

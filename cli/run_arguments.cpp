@@ -24,8 +24,8 @@ int parse_scale(const std::string& text) {
     for (int n = 1; n <= kMost; ++n)
         if (text == "1/" + std::to_string(n)) return n;
     const double value = parse_number(text).value_or(0);
-    if (value <= 0 || value > 1) return 0;
-    const int n = int(1 / value + 0.5);
+    if (value < 1.0 / (2 * kMost) || value > 1) return 0;  // below, the quotient may be no int
+    const auto n = int(std::lround(1 / value));
     return n <= kMost && std::abs(value * n - 1) < 1e-9 ? n : 0;
 }
 

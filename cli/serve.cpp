@@ -34,8 +34,6 @@
 #include "framework/batch/worker.h"
 #include "framework/serve/drawer.h"
 
-extern char** environ;
-
 namespace aftershade::cli {
 
 namespace {

@@ -22,8 +22,6 @@
 #include "framework/file/frame_stream.h"
 #include "framework/run/frame_run.h"
 
-extern char** environ;
-
 namespace aftershade::cli {
 
 void add_stream_options(CLI::App& app, StreamArguments& arguments) {
