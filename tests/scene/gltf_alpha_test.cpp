@@ -60,6 +60,19 @@ TEST(GltfAlpha, OfMaskCutsHolesWhereItIsBelowTheCutoff) {
     EXPECT_FALSE(std::isinf(by_default.images.at("depth").at(5, 3, 0))) << "0.502 is not";
 }
 
+TEST(GltfAlpha, OfATextureThatIsOpaqueBlendsNothing) {
+    const auto blends = [](int alpha) {
+        const TemporaryFolder folder;
+        const std::string png = rgba_png(2, 2, [&](int, int) { return glm::ivec4(90, 90, 90, alpha); });
+        const std::string material =
+            R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "alphaMode": "BLEND")";
+        write_text(folder / "model.gltf", textured_quad(material, {.pictures = {png}}).text());
+        return quad_scene(folder.path(), 2).has_transparency();
+    };
+    EXPECT_FALSE(blends(255));
+    EXPECT_TRUE(blends(254));
+}
+
 TEST(GltfAlpha, OfOpaqueAndOfFactorsAloneNeedNoTexture) {
     const Capture opaque = graded_capture("", kAround);
     EXPECT_NEAR(pixel_of(opaque, "color", 0, 3).x, expected_red(1, 3), 1e-5);
