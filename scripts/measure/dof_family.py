@@ -7,7 +7,7 @@ from measure.exr import read_exr
 from measure.measures import Array
 from measure.tree import AFTERSHADE, EXACT, ROOT, command, read_json, write_look
 
-# In the order of the documents; what is not in effects/ yet is left out.
+# In the order of the documents; what this tree does not have is left out.
 FAMILY = ["dof_simple", "bokeh", "bokeh_gather", "dof_scatter", "bokeh_hexagon", "bokeh_disk", "dof_layered", "dof"]
 
 
@@ -37,7 +37,7 @@ def effect_folders() -> list[pathlib.Path]:
 
 def effects() -> list[Effect]:
     found: dict[str, Effect] = {}
-    for folder in effect_folders():
+    for folder in [*effect_folders(), ROOT / "effects/reference"]:
         for name in FAMILY:
             if name not in found and (folder / name / "effect.json").exists():
                 found[name] = Effect(folder / name)
