@@ -22,7 +22,7 @@ public:
         header.data_window = widened(header.data_window);
         header.display_window = widened(header.display_window);
         if (header.camera.jitter_px) (*header.camera.jitter_px)[along_x_ ? 0 : 1] *= longer_;
-        for (auto& [role, image] : wide.images) image = widened(capture, role);
+        for (auto& [role, image] : wide.images) image = widened(capture, role.name());
         return wide;
     }
 

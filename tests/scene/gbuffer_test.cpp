@@ -214,10 +214,10 @@ TEST(Gbuffer, HasTheSameBitsWhateverTheThreads) {
             const Image& other = b.images.at(role);
             if (image.type() == ComponentType::float32)
                 ASSERT_TRUE(std::equal(image.floats().begin(), image.floats().end(), other.floats().begin()))
-                    << role;
+                    << role.name();
             else
                 ASSERT_TRUE(std::equal(image.uints().begin(), image.uints().end(), other.uints().begin()))
-                    << role;
+                    << role.name();
         }
     }
 }

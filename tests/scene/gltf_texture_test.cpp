@@ -116,7 +116,7 @@ TEST(NormalMaps, ThatAreFlatChangeNoBit) {
     const Capture without = capture_of(textured_quad(R"("alphaMode": "OPAQUE")", flat).text(), 8, kSun);
     for (const auto& [role, image] : with.images)
         if (image.type() == ComponentType::float32)
-            EXPECT_TRUE(std::ranges::equal(image.floats(), without.images.at(role).floats())) << role;
+            EXPECT_TRUE(std::ranges::equal(image.floats(), without.images.at(role).floats())) << role.name();
 }
 
 glm::dvec3 normal_of(const glm::ivec3& texel) {

@@ -81,7 +81,7 @@ TEST(SceneLayers, BeginWithTheCaptureItself) {
         const Image& same = layers.front().images.at(role);
         if (image.type() == ComponentType::uint32)
             EXPECT_TRUE(std::ranges::equal(image.uints(), same.uints()));
-        else EXPECT_TRUE(std::ranges::equal(image.floats(), same.floats())) << role;
+        else EXPECT_TRUE(std::ranges::equal(image.floats(), same.floats())) << role.name();
     }
 }
 
