@@ -276,7 +276,8 @@ TEST(Architecture, NoTextOfTheLibraryNamesAnOptionOfTheCommand) {
     ASSERT_GT(own.size(), 100u);
     for (const Line& line : code_lines(kRoot / "framework", {".h", ".cpp"})) {
         // Jobs of farms and of golden cases are command lines.
-        if (line.place.starts_with("framework/batch/") || line.place.starts_with("framework/golden/"))
+        if (line.place.starts_with("framework/batch/") || line.place.starts_with("framework/golden/") ||
+            line.text.find("--") == std::string::npos)  // quicker than the expressions
             continue;
         for (Matches at(line.text.begin(), line.text.end(), literal); at != Matches(); ++at) {
             const std::string text = at->str();

@@ -26,8 +26,8 @@ GroupLimits group_limits();
 
 /// "model name" of /proc/cpuinfo, or "unknown".
 std::string cpu_model();
-/// The processor instructions that change bits of a software renderer, "x86-64 with FMA", with what limits
-/// Mesa to fewer of them.
+/// The processor's instructions that change bits of a software renderer, as in "x86-64 with FMA". A variable
+/// that makes Mesa use fewer of them counts.
 std::string cpu_instructions();
 
 }  // namespace aftershade

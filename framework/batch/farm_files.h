@@ -1,4 +1,4 @@
-// The files of farms: what their writers share, and the choice among them.
+// A run divided into tasks, and the files of it that farms read. Nothing here talks to a service.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Captures of several pictures that lie behind one another: capture.json's "layers".
+// Captures of several pictures that lie behind one another: capture.json's "layers", and deep files.
 #include <algorithm>
 #include <cmath>
 #include <utility>

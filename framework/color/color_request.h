@@ -1,4 +1,4 @@
-// Requests to OpenColorIO, and the reasons that refuse them.
+// Requests to OpenColorIO, the reasons that refuse them, and the variable that names the config.
 #pragma once
 
 #include <compare>

@@ -1,4 +1,5 @@
-// Values of parameters: as text, between two others, and for images of another size.
+// Values of parameters: the parts that types share, text, values between two others, and values for images of
+// another size.
 #include <algorithm>
 #include <cassert>
 #include <cmath>

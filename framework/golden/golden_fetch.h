@@ -1,4 +1,4 @@
-// The images of a suite with a store, fetched into its folder of goldens.
+// The images of a suite with a store, fetched into its folder of goldens, and their copies on this machine.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,5 @@
-// What EGL has current in a thread, whoever made it so. Internal to framework/gpu.
+// What EGL has current in a thread, whoever made it so. ForeignContextGuard is for programs that have
+// contexts of their own; the rest is internal to framework/gpu.
 #pragma once
 
 namespace aftershade::gpu {

@@ -1,4 +1,4 @@
-// The content of a look's effects and values, as text to be hashed.
+// The content of a look's effects and values, as text to be hashed, and its requests to OpenColorIO.
 #pragma once
 
 #include <filesystem>

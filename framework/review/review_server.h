@@ -72,7 +72,7 @@ public:
     /// Reads the report once. Throws Error(ErrorKind::capture).
     explicit ReviewServer(ReviewSetup setup);
 
-    /// Answers a request to an address below /api/ that the guards let through.
+    /// Answers a request to an address below /api/ that refusal() lets through.
     void answer(const serve::Request& request, const serve::Connections::Reply& reply);
 
     std::size_t report_bytes() const { return report_json_.size(); }

@@ -1,6 +1,7 @@
 // What a surface does with light.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>

@@ -1,4 +1,5 @@
 // Requests and answers of HTTP/1.1, as far as one page needs them: a whole request in, a whole answer out.
+// Refusal says why a request is not done.
 #pragma once
 
 #include <cstddef>

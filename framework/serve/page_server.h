@@ -39,7 +39,7 @@ public:
         : setup_(std::move(setup)), stamp_(stamp_of_folders(setup_.effect_folders)) {}
 
     using Reply = PictureQueue::Reply;
-    /// Answers a request to an address below /api/ that the guards let through; a picture once it is drawn.
+    /// Answers a request to an address below /api/ that refusal() lets through; a picture once it is drawn.
     void answer(const Request& request, const Reply& reply);
 
 private:

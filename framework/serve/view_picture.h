@@ -71,7 +71,8 @@ std::optional<std::pair<double, double>> nearest_surface(const Capture& capture)
 
 nlohmann::ordered_json histogram_json(const Image& picture);
 
-/// The same pixels as encode_png(), and its chunk sRGB. `display` has 1, 3 or 4 float channels and is not
+/// The same pixels as encode_png(), and its chunk sRGB, at the fastest level of zlib: a page shows the
+/// picture once, where encode_png() packs for small files. `display` has 1, 3 or 4 float channels and is not
 /// empty.
 std::string quick_png(const Image& display, bool is_srgb);
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "framework/base/cores.h"
 #include "framework/golden/approved_image.h"
 #include "tests/cli/golden_suite.h"
 

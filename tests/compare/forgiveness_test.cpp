@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "framework/compare/pixel_differences.h"
 #include "tests/compare/pictures.h"
 
 namespace aftershade {
