@@ -64,7 +64,7 @@ void add_visibility_options(CLI::App& app, VisibilityArguments& options) {
         ->capture_default_str();
     app.add_option("--visibility-on", options.device,
                    "Trace and light the samples on the cpu, or with gl: in single precision by compute "
-                   "shaders, whose caches count as well")
+                   "shaders, which fill the caches, too")
         ->check(CLI::IsMember({"cpu", "gl"}))
         ->capture_default_str();
     add_gl_options(app, options.gl);

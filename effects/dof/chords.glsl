@@ -173,7 +173,8 @@ Bundle empty_bundle(Chord chord) {
     return Bundle(chord, 0.0, 0.0, 1e30, 0.0, 0.0, 0);
 }
 
-// Light that outshines the darkest chord does not continue behind the silhouette.
+// Light that outshines the darkest chord so far counts little behind the silhouette. Chords before a darker one keep
+// part of their weight.
 void add_chord(inout Bundle bundle, Chord chord, float weight) {
     float own = max(amount(chord.light.color.rgb), 0.0);
     float before = clamp((kOutshines * own + 1e-6) / bundle.darkest, 0.0, 1.0), outshines = max(own / (kOutshines * bundle.darkest + 1e-6), 1.0);
@@ -231,7 +232,8 @@ struct Patch {
 
 #ifndef GUESSES
 // How far it is to the surface of `coc`, past nearer ones; negative where something further comes first.
-float distance_to(vec2 center, float coc, vec2 direction, float reach_px) {
+float distance_to(vec2 center, float own_coc, float coc, vec2 direction, float reach_px) {
+    float bound = max(coc - kOneSurface, own_coc + kClear);
     float end_px = min(reach_px, outside_from_px(center, direction)), at_px = 1.0, tap_coc = 0.0, tap_px = 0.0;
     do {
         int level = level_of(at_px);
@@ -239,12 +241,12 @@ float distance_to(vec2 center, float coc, vec2 direction, float reach_px) {
         tap_coc = level == 0 ? coc_near(q) : coarse_coc_at(q >> level, grid_of(level));
         tap_px = at_px;
         at_px += float(1 << level);
-    } while (tap_coc <= coc - kOneSurface && at_px < end_px);
-    return abs(tap_coc - coc) < kOneSurface ? tap_px : -1.0;
+    } while (tap_coc <= bound && at_px < end_px);
+    return tap_px < end_px && tap_coc > bound && tap_coc < coc + kOneSurface ? tap_px : -1.0;
 }
 
 // By chords whose ends both lie on the surface of `mean`. Likeness counts more here.
-Chord finely_turned(vec2 center, Bundle bundle, Chord mean, float reach_px) {
+Chord finely_turned(vec2 center, float own_coc, Bundle bundle, Chord mean, float reach_px) {
     const float kTurn = 3.14159265 / float(kFineChords);
     const mat2 kTurned = mat2(cos(kTurn), sin(kTurn), -sin(kTurn), cos(kTurn));
     Bundle fine = empty_bundle(mean);
@@ -252,7 +254,7 @@ Chord finely_turned(vec2 center, Bundle bundle, Chord mean, float reach_px) {
     vec2 direction = vec2(1.0, 0.0);
     int i = 0;
     do {
-        float a_px = distance_to(center, mean.light.coc, direction, reach_px), b_px = distance_to(center, mean.light.coc, -direction, reach_px);
+        float a_px = distance_to(center, own_coc, mean.light.coc, direction, reach_px), b_px = distance_to(center, own_coc, mean.light.coc, -direction, reach_px);
         Chord chord = chord_between(end_at(center, direction, abs(a_px)), end_at(center, -direction, abs(b_px)));
         float root = 1.0 / (chord.length_px * chord.length_px * (kFineUnlike + chord.unlike));
         add_chord(fine, chord, a_px > 0.0 && b_px > 0.0 ? root * root : 0.0);
@@ -282,7 +284,7 @@ Patch patch_behind(vec2 center, Light own, float reach_px, bool is_thin) {
     Chord mean = mean_of(one.sum);
     if (one.sum.weight == 0.0) return Patch(mean, 0.0, false);
 #ifndef GUESSES
-    if (!is_agreed && !is_thin && spread_of(one) > kContradiction) mean = finely_turned(center, one, mean, reach_px);
+    if (!is_agreed && !is_thin && spread_of(one) > kContradiction) mean = finely_turned(center, own.coc, one, mean, reach_px);
 #endif
     return Patch(mean, kUnlike * one.best, true);
 }

@@ -383,5 +383,26 @@ TEST(DofHidden, AnEdgeThatCrossesAPoleAtASmallAngleGoesOnBehindIt) {
     EXPECT_LT(error / count, 0.125);  // by 12 chords of any length it was 0.154
 }
 
+/// A chord that ends at the border, beyond which nothing is known, takes nothing from there.
+TEST(DofHidden, APoleAtTheRightBorderIsTheMirroredOneAtTheLeft) {
+    const auto with_pole = [](bool at_right) {
+        Capture capture =
+            make_capture({.width = kWidth, .height = kHeight, .background_depth_m = kApertureFocusM}, 0);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const int from_border = at_right ? kWidth - 1 - x : x;
+                const float stripe = (from_border + 2 * y) % 16 < 8 ? 0.8f : 0.2f;
+                for (int c = 0; c < 3; ++c)
+                    capture.images["color"].at(x, y, c) = from_border < 3 ? 0.05f : stripe;
+                if (from_border < 3) capture.images["depth"].at(x, y, 0) = kApertureFocusM / 2;
+            }
+        return blurred(capture);
+    };
+    const Image right = with_pole(true), left = with_pole(false);
+    for (int y = 8; y < kHeight - 8; ++y)
+        for (int x = 0; x < 12; ++x)
+            ASSERT_NEAR(right.at(kWidth - 1 - x, y, 0), left.at(x, y, 0), 1e-3) << x << " " << y;
+}
+
 }  // namespace
 }  // namespace aftershade::test::dof

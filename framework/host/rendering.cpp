@@ -42,17 +42,20 @@ void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture)
     std::vector<std::string> needs;
     for (const MissingRole& missing : find_missing_roles(pipeline, read)) needs.push_back(need_of(missing));
     // Files have a coverage by Cryptomattes, too, which is read where the look asks for it.
-    if (!capture.images.contains(kObjectIdRole))
-        for (const RoleId& role : pipeline.capture_roles())
-            if (role.is_coverage() && !capture.images.contains(role))
-                needs.push_back("the " + role.name() + " needs the role 'object_id'");
+    const std::vector<RoleId> roles = pipeline.capture_roles();
+    const auto lacks = [&](const RoleId& role) {
+        return role.is_coverage() && !capture.images.contains(role);
+    };
+    const auto coverage = std::ranges::find_if(roles, lacks);
+    if (coverage != roles.end() && !capture.images.contains(kObjectIdRole))
+        needs.push_back("the " + coverage->name() + " needs the role 'object_id'");
     if (needs.empty()) return;
+    const std::string there = read.roles.empty() ? "no images" : list_of_names(read.roles, "and");
     const std::string them = needs.size() == 1 ? "it" : "them";
     fail_at(ErrorKind::capture, "capture",
-            joined(needs, " and ") + "; the capture has " +
-                (read.roles.empty() ? "no images" : list_of_names(read.roles, "and")) +
-                (is_of_files ? " (add " + them + " to CaptureOptions::roles)"
-                             : " (add " + them + " by set_image or set_texture)"));
+            joined(needs, " and ") + "; the capture has " + there + " (" +
+                (is_of_files ? "render " + them + ", or add " + them + " to CaptureOptions::roles)"
+                             : "add " + them + " by set_image or set_texture)"));
 }
 
 void require_same_window(const Capture::Data& capture, const Capture::Data* other, const char* option) {

@@ -28,7 +28,7 @@ bool file_exists(const std::string& path, void*) {
 std::string without_percents(const std::string& uri) {
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        int value = 0;
+        unsigned value = 0;
         const char *first = uri.data() + i + 1, *last = first + 2;
         if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(first, last, value, 16).ptr == last) {
             text += char(value);
@@ -40,8 +40,9 @@ std::string without_percents(const std::string& uri) {
     return text;
 }
 
-/// tinygltf 2.7 takes a plus sign for a blank, which URIs of files do not mean (RFC 3986). Any file of such a
-/// name lets the loader go on; read_files_with_plus_signs() finds the right one.
+/// tinygltf 2.7 takes a plus sign for a blank, which URIs of files do not mean (RFC 3986). Where the loader
+/// goes on with a file of such a name, read_files_with_plus_signs() reads the right one. The loader refuses
+/// plus signs in names of folders, and a buffer if a file with blanks beside it has another size.
 std::string with_plus_signs(const std::string& path, void*) {
     if (file_exists(path, nullptr) || path.find(' ') == path.npos) return path;
     const fs::path wanted(path);
@@ -113,18 +114,19 @@ std::string folder_of(const fs::path& path) {
 void read_files_with_plus_signs(tinygltf::Model& model, const fs::path& path, bool keeps_images) {
     std::string folder = folder_of(path);
     const auto read = [&](const std::string& uri, std::vector<unsigned char>& bytes) {
-        if (uri.starts_with("data:") || uri.find('+') == uri.npos) return;
         std::string fault;
-        if (!read_whole_file(&bytes, &fault, folder + "/" + without_percents(uri), &folder))
-            fail_gltf(path, fault);
+        if (!uri.starts_with("data:") && uri.find('+') != uri.npos)
+            read_whole_file(&bytes, &fault, folder + "/" + without_percents(uri), &folder);
+        return fault;
     };
     for (tinygltf::Buffer& buffer : model.buffers) {
         const std::size_t bytes = buffer.data.size();
-        read(buffer.uri, buffer.data);
+        if (const std::string fault = read(buffer.uri, buffer.data); !fault.empty()) fail_gltf(path, fault);
         if (buffer.data.size() < bytes)
             fail_gltf(path, fmt::format("{} has {} bytes, its byteLength is {}", buffer.uri,
                                         buffer.data.size(), bytes));
     }
+    // An image that is not there is a fault of the material that needs it.
     for (tinygltf::Image& image : model.images)
         if (keeps_images && image.bufferView == -1) read(image.uri, image.image);
 }

@@ -123,11 +123,11 @@ struct VisibilityPasses {
 };
 
 /// `renderer` is of a scene of meshes (triangulated()). All caches give the same picture; they change only
-/// the count, and the time. Nothing depends on the number of threads. Lists are for Visibility::memoised, and
-/// Transparency::sorted is for the others. `kept` is for Visibility::memoised with ShadingCache::global; it
-/// has the samples of the frames that were rendered with it before, and then of this one. Its light does not
-/// come from passes.resolve, nor its addresses
-/// from passes.fill.
+/// the count, and the time. Nothing depends on the number of threads, except the counts that a CacheFiller
+/// gives. Lists are for Visibility::memoised, and Transparency::sorted is for the others. `kept` is for
+/// Visibility::memoised with ShadingCache::global; it has the samples of the frames that were rendered with
+/// it before, and then of this one. Its light does not come from passes.resolve, nor its addresses from
+/// passes.fill.
 VisibilityPicture render_visibility(const SceneRenderer& renderer, int frame,
                                     const VisibilitySettings& settings, const VisibilityPasses& passes = {},
                                     KeptShadings* kept = nullptr);

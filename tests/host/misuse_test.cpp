@@ -191,7 +191,8 @@ std::vector<Misuse> misuses_of_renders() {
              const std::filesystem::path file = AFTERSHADE_SOURCE_DIR "/scenes/suzanne/gbuffer_0004.exr";
              b.look.render(Capture::read(b.host, file, {.roles = {"color"}}));
          },
-         Kind::capture, "needs the role 'depth'; the capture has 'color' (add it to CaptureOptions::roles)",
+         Kind::capture,
+         "needs the role 'depth'; the capture has 'color' (render it, or add it to CaptureOptions::roles)",
          "capture"},
         {"a mask of objects where no ids are",
          [](Bench& b) {
