@@ -32,6 +32,12 @@ void check_external(gpu::Context& context, const GlTexture& texture, const std::
                                 known.type == ComponentType::uint32, role);
 }
 
+bool needs_color(const PipelineStep& step) {
+    return std::ranges::any_of(step.manifest->inputs, [&](const InputSpec& input) {
+        return !input.optional && step.inputs.at(input.name) == InputSource{-1, kColorRole};
+    });
+}
+
 void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture) {
     const bool is_of_files = !capture.header.path.empty();
     if (is_of_files) require_capture_roles(pipeline, capture.header);
@@ -39,6 +45,9 @@ void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture)
     read.roles.clear();
     for (const auto& [role, image] : capture.images)
         if (!role.is_coverage()) read.roles.push_back(role.name());
+    const std::string there = read.roles.empty() ? "no images" : list_of_names(read.roles, "and");
+    // Whoever read a file without its color takes other outputs.
+    if (is_of_files && std::ranges::none_of(pipeline.steps, needs_color)) read.roles.push_back(kColorRole);
     std::vector<std::string> needs;
     for (const MissingRole& missing : find_missing_roles(pipeline, read)) needs.push_back(need_of(missing));
     // Files have a coverage by Cryptomattes, too, which is read where the look asks for it.
@@ -50,7 +59,6 @@ void require_roles(const Pipeline& pipeline, const aftershade::Capture& capture)
     if (coverage != roles.end() && !capture.images.contains(kObjectIdRole))
         needs.push_back("the " + coverage->name() + " needs the role 'object_id'");
     if (needs.empty()) return;
-    const std::string there = read.roles.empty() ? "no images" : list_of_names(read.roles, "and");
     const std::string them = needs.size() == 1 ? "it" : "them";
     fail_at(ErrorKind::capture, "capture",
             joined(needs, " and ") + "; the capture has " + there + " (" +

@@ -250,9 +250,11 @@ TEST(Gltf, SurvivesDamagedBytes) {
 
 TEST(GltfFaults, OfManyValuesThatTheFileDoesNotHold) {
     File file;
+    file.floats({0, 0, 0}, 3);
     file.primitive(fmt::format(R"("POSITION": {})", file.accessor(7, kFloat, 89'000'000, "VEC3")));
     EXPECT_EQ(fault_of(with(file.text(), R"("bufferView": 7, )", "")),
-              "mesh 0 primitive 0: POSITION has 89000000 values and no bufferView; the limit is 12000000");
+              "mesh 0 primitive 0 POSITION: accessor 1 has 89000000 values and no bufferView; the limit is "
+              "12000000");
 }
 
 }  // namespace
