@@ -85,7 +85,7 @@ std::string argument_words(const Command& command) {
     return words.empty() ? "" : "echo '" + joined(words, " ", " ") + "'";
 }
 
-/// Of the options that take a value: the words that it may be, or none where it is a file or anything else.
+/// For each option that takes a value, its possible words; no words if it may be a file or anything else.
 std::string option_values(const Command& command) {
     std::string text;
     for (const CommandOption& option : command.options) {

@@ -51,7 +51,7 @@ void main() {{ result = vec4({}, {}, {}, alpha) + vec4(gl_FragCoord.xy, 0.0, 0.0
 
 constexpr int kWidth = 3, kHeight = 2;
 
-/// Of a channel at a texel, as the shader gives it: exact in floats.
+/// What the shader writes to a channel of a texel; floats hold it exactly.
 float expected(int x, int y, int channel) {
     const float place = channel == 0 ? float(x) + 0.5F : channel == 1 ? float(y) + 0.5F : 0.0F;
     return kColour[std::size_t(channel)] + place;

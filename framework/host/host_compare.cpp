@@ -15,6 +15,7 @@
 #include "framework/host/host_data.h"
 #include "framework/host/image_data.h"
 #include "framework/inspect/velocity_frames.h"
+#include "framework/inspect/velocity_report.h"
 
 namespace aftershade::host {
 
@@ -297,14 +298,7 @@ const aftershade::Capture& in_memory(const Capture& capture) {
 }  // namespace
 
 const char* velocity_verdict_name(VelocityVerdict verdict) noexcept {
-    switch (verdict) {
-        case VelocityVerdict::confirmed: return "confirmed";
-        case VelocityVerdict::undecided: return "undecided";
-        case VelocityVerdict::wrong: return "wrong";
-        case VelocityVerdict::no_fit: return "no_fit";
-        case VelocityVerdict::untestable: break;
-    }
-    return "untestable";
+    return aftershade::velocity_verdict_name(aftershade::VelocityVerdict(int(verdict)));
 }
 
 std::vector<VelocityCheck> check_velocity(const Host& host, const std::filesystem::path& frame,

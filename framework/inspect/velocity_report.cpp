@@ -185,7 +185,7 @@ std::string describe_without_limit(const VelocityCheck& check) {
 
 }  // namespace
 
-std::string velocity_verdict_name(VelocityVerdict verdict) {
+const char* velocity_verdict_name(VelocityVerdict verdict) noexcept {
     switch (verdict) {
         case VelocityVerdict::confirmed: return "confirmed";
         case VelocityVerdict::undecided: return "undecided";

@@ -8,7 +8,7 @@
 
 namespace aftershade {
 
-std::string velocity_verdict_name(VelocityVerdict verdict);
+const char* velocity_verdict_name(VelocityVerdict verdict) noexcept;
 
 /// The settings under which the decoded vectors come out as `hypothesis` makes them.
 VelocitySettings correct_settings(const VelocitySettings& settings, const VelocityHypothesis& hypothesis);

@@ -38,7 +38,7 @@ struct FrameResult {
     std::vector<std::string> messages;        ///< what native code logged
     std::optional<FrameTelemetry> telemetry;  ///< where it was requested
     ColorEncoding display_encoding = kSrgbDisplay;  ///< of the image `display`; its curve may be unknown
-    /// Of the image `color`, if it is not light in the capture's primaries.
+    /// The encoding of the image `color`, if it is not light in the capture's primaries.
     std::optional<ColorEncoding> color_encoding;
     std::string history_reset;  ///< why history restarted: "a cut"; "" where it continued or is none
 };

@@ -58,7 +58,7 @@ public:
         read_alpha(source, material);
         return material;
     }
-    /// Of the material that was read last, from channel 1 on.
+    /// The channels of the material that was read last, from channel 1 on.
     const std::vector<UvChannel>& channels() const { return channels_; }
 
 private:

@@ -45,8 +45,8 @@ bool keeps_shading(const Job& job) {
     return job.visibility && job.visibility->keep_shading;
 }
 
-/// Of one capture of every role, and the one before it, which is being written; of what each visibility
-/// sample met; and of the light that is kept.
+/// The memory of one capture with every role and of the one before it, which is being written, of the hits of
+/// visibility samples, and of kept light.
 std::uint64_t bytes_of_job(const Scene& scene, const Job& job) {
     std::uint64_t channels = 0;
     for (const std::string& role : role_names()) channels += std::uint64_t(find_role(role)->channels);

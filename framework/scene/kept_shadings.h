@@ -35,7 +35,7 @@ public:
 
     std::size_t size() const { return samples_.size(); }
     std::uint64_t bytes() const { return samples_.size() * bytes_of_sample(lights_); }
-    /// Of a scene with this many lights.
+    /// The size of a sample in a scene with this many lights.
     static std::uint64_t bytes_of_sample(std::size_t lights);
     /// About how many samples a pixel keeps, with this many visibility samples: in shipped scenes up to 8.
     static double samples_of_pixel(int samples, double shading_rate);
