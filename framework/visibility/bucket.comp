@@ -12,7 +12,8 @@ const uint kAttempts = 256u;
 // after the address, which would be another's if the key went in between.
 uint held(uint bucket, uint id) {
     uint found = kNoShading;
-    for (uint place = bucket * kPlaces; place < (bucket + 1u) * kPlaces; ++place) {
+    for (uint i = 0u; i < kPlaces; ++i) {
+        uint place = bucket * kPlaces + i;
         if (atomicOr(keys[place], 0u) != id) continue;
         memoryBarrierBuffer();
         uint address = atomicOr(addresses[place], 0u);
@@ -34,7 +35,7 @@ void store(uint bucket, uint id, uint address) {
 // There is one table: `first_slot` is 0.
 uint request(uint id, uint first_slot) {
     uint bucket = first_slot + (mixed(id) & (slots - 1u));
-    for (uint attempt = 0u; attempt < kAttempts; ++attempt) {
+    for (uint attempt = 0u; attempt < kAttempts && attempts_left > 0u; ++attempt, --attempts_left) {
         uint address = held(bucket, id);
         if (address != kNoShading) return address;
         if (atomicCompSwap(buckets[bucket].x, 0u, 1u) == 0u) {

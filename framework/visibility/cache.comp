@@ -6,7 +6,7 @@ const uint kAttempts = 128u;
 
 uint request(uint id, uint first_slot) {
     uint slot = mixed(id);
-    for (uint attempt = 0u; attempt < kAttempts; ++attempt, ++slot) {
+    for (uint attempt = 0u; attempt < kAttempts && attempts_left > 0u; ++attempt, ++slot, --attempts_left) {
         uint place = first_slot + (slot & (slots - 1u)), old = atomicCompSwap(keys[place], kNoShading, id);
         if (old == kNoShading) atomicAdd(misses, 1u);
         if (old == id || old == kNoShading) return place;

@@ -23,3 +23,7 @@ uint mixed(uint x) {
     x = (x ^ (x >> 16)) * 0x45d9f3bu;
     return x ^ (x >> 16);
 }
+
+// Further attempts of all the samples of a pixel: llvmpipe ends every loop of an invocation once 65,535 turns are over in all, without an error
+// (lp_bld_limits.h), and what comes after it would neither be counted nor have a place.
+uint attempts_left = 4096u;
