@@ -104,6 +104,28 @@ TEST(DofEdges, ANarrowBlurCoversAsMuchAsItsAperture) {
     }
 }
 
+/// The signed CoC of a near cylinder is -(end + slope sqrt(s)), s px inside its edge. From u radii off the
+/// lens's middle its edge lies at the least s - u (end + slope sqrt(s)), which is -(u end + u^2 slope^2 / 4).
+TEST(DofEdges, ARoundSurfaceIsAsWideAsItsEndAndNotAsItsLastPixel) {
+    constexpr int left = 40, right = 72;
+    constexpr double radius_px = 2.5, slope = 0.6, middle = 0.5 * (left + right);
+    for (const double end : {0.6, 0.8, 1.0}) {
+        const auto depth_at = [&](int x) {
+            const double inside_px = 0.5 * (right - left) - std::abs(x + 0.5 - middle);
+            const double coc_px = end + slope * std::sqrt(std::max(inside_px, 0.0));
+            return kApertureFocusM / (1 + (kApertureFocusM / kApertureNearM - 1) * coc_px / radius_px);
+        };
+        const Image out = blurred(
+            [&](int x) {
+                return x >= left && x < right ? Column{0, float(depth_at(x))} : Column{1, kApertureFocusM};
+            },
+            radius_px);
+        const double edge_radii = (std::sqrt(end * end + slope * slope / 2) - end) / (slope * slope / 2);
+        EXPECT_NEAR(1 - double(out.at(left - 1, 32, 0)), 1 - disk_left_of(edge_radii), 0.04) << end;
+        EXPECT_NEAR(1 - double(out.at(left - 2, 32, 0)), 0, 0.01) << end;
+    }
+}
+
 /// A ball in focus covers two fifths of a column of pixels, and a wall that is a little out of focus the
 /// rest.
 TEST(DofEdges, AnAntialiasedEdgeInFocusStaysBeforeANarrowBlur) {

@@ -2,6 +2,7 @@
 #include <pass>
 #include <lens/packing.glsl>
 #include <lens/own.glsl>
+#include "horizon.glsl"
 #ifdef HAS_SURROUND
 #include "shine.glsl"
 #endif
@@ -18,6 +19,9 @@ void main() {
     Unmixed alone = unmixed(p, texel.rgb, coc_px);
     texel.rgb = alone.color;
     out_mixture = alone.kind;
+#endif
+#if defined(SILHOUETTES) || defined(HORIZON)
+    coc_px = horizon_coc(p, coc_px);
 #endif
 #ifdef HAS_SURROUND
     vec2 around_amount = texelFetch(surround, p / 8, 0).rg;

@@ -1,8 +1,7 @@
 // Light of a pixel at a silhouette, without what antialiasing brought in from across it. Left there, it would stay as an outline
 // where the nearer surface's blur dissolves.
-#include <lens/highlight.glsl>
+#include "horizon.glsl"
 
-float coc_inside(ivec2 p) { return texelFetch(lit_coc, clamp(p, ivec2(0), frame.size - 1), 0).r; }
 vec3 color_inside(ivec2 p) { return texelFetch(color, clamp(p, ivec2(0), frame.size - 1), 0).rgb; }
 
 const float kLeastShare = 0.1, kMostShare = 0.7;
