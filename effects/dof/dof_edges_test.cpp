@@ -173,6 +173,34 @@ TEST(DofEdges, TextureBesideASilhouetteIsNoMixtureWhereSilhouettesAreSharp) {
         EXPECT_NEAR(out.at(stripe_x, y, 0), opacity * bar + (1 - opacity) * stripe, 0.03) << y;
 }
 
+/// Bars whose sides lie within pixels, before a wall in focus. Antialiasing mixed two fifths of a bar into
+/// the first column of the gap between them, and the gap is too narrow to have the wall's colour 2 px inside.
+TEST(DofEdges, AGapOfOneOrTwoPixelsBetweenBarsShowsTheWallWithoutTheirLight) {
+    constexpr float wall = 0.8f, bar = 0.1f;
+    constexpr double share = 0.4, radius_px = 8;
+    constexpr int gap = 42;
+    for (const int second : {gap + 1, gap + 2}) {
+        const auto cover = [&](double left, double right) {
+            return [=](int x) {
+                return std::clamp(std::min(x + 1.0, right) - std::max<double>(x, left), 0.0, 1.0);
+            };
+        };
+        const double left = 40 - share, right = second + 2;
+        const auto of_first = cover(left, gap + share), of_second = cover(second, right);
+        const Image out = blurred(
+            [&](int x) {
+                const double bars = of_first(x) + of_second(x);
+                return Column{float(bars * bar + (1 - bars) * wall),
+                              bars > 0.5 ? kApertureNearM : kApertureFocusM};
+            },
+            radius_px);
+        const double opacity =
+            opacity_of(left, gap + share, gap, radius_px) + opacity_of(second, right, gap, radius_px);
+        for (int y = 20; y < 44; ++y)
+            EXPECT_NEAR(out.at(gap, y, 0), opacity * bar + (1 - opacity) * wall, 0.04) << second << " " << y;
+    }
+}
+
 /// In tiles near the upper right bar a blur may come from afar, so what lies in front is gathered at half
 /// size. Below row 48 it is gathered at full size.
 TEST(DofEdges, ABlurContinuesBelowTilesThatAWiderOneReaches) {

@@ -31,6 +31,7 @@ struct Mixture {
     vec3 rest;       // light without what came from across
     float share;     // 0 where p is no mixture
     float length_2;
+    float off_line;  // as kOffLine
 };
 
 bool differ(vec3 self, vec3 across) {
@@ -41,13 +42,14 @@ bool differ(vec3 self, vec3 across) {
 Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across) {
     vec3 difference = across - self, change = self - beyond;
     float length_2 = dot(difference, difference);
-    const Mixture none = Mixture(vec3(0.0), 0.0, 0.0);
+    const Mixture none = Mixture(vec3(0.0), 0.0, 0.0, 1.0);
     if (!differ(self, across)) return none;
     // Shading that continues as it does inside the surface is not a mixture.
     float share = (dot(own - self, difference) - 2.0 * max(dot(change, difference), 0.0)) / length_2;
     vec3 rest = own - self - share * difference;
-    if (share <= kLeastShare || share > kMostShare || max(dot(rest, rest), dot(change, change)) > kOffLine * length_2) return none;
-    return Mixture(max(own - share * difference, min(own, self)), share, length_2);
+    float off_line = max(dot(rest, rest), dot(change, change)) / length_2;
+    if (share <= kLeastShare || share > kMostShare || off_line > kOffLine) return none;
+    return Mixture(max(own - share * difference, min(own, self)), share, length_2, off_line);
 }
 
 // Whether what lies across reaches a pixel of the surface from one of its sides.
@@ -71,7 +73,7 @@ struct Unmixed {
 };
 
 Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
-    Mixture best = Mixture(own, 0.0, 0.0);
+    Mixture best = Mixture(own, 0.0, 0.0, 1.0);
     ivec2 way = ivec2(0);
     float kind = kNoEdge;
     // Software GL ends a loop once no pixel of a group goes on, but runs what an if leaves out: so each takes its own neighbours in turn.
@@ -82,23 +84,26 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
         int i = findLSB(across_edge);
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float across_coc = coc_inside(p + to);
-        if (is_across(p - 2 * to, coc_px)) continue;
+        // The surface has its own colour 2 px inside, where antialiasing does not reach. Between near objects a gap of 2 px has it 1 px
+        // inside alone, and one of 1 px beyond the next object.
+        bool is_beside_own = !is_across(p - to, coc_px);
+        int inside = !is_across(p - 2 * to, coc_px) ? 2 : is_beside_own ? 1 : 3;
+        if (inside == 3 && is_across(p - 3 * to, coc_px)) continue;
         if (abs(min(across_coc, coc_px)) < kLeastBlurredPx) continue;  // a nearer one in focus keeps its antialiasing
-        vec3 self = color_inside(p - 2 * to), across = color_inside(p + to);
+        vec3 beside = color_inside(p - to);
+        vec3 self = color_inside(p - inside * to), across = color_inside(p + to);
         if (abs(coc_inside(p + 2 * to) - across_coc) <= kOneSurfacePx) {
             // The pixel across may be mixed too, or the only one of a lit rim.
             vec3 inner = color_inside(p + 2 * to) - self, outer = across - self;
             if (dot(inner, inner) > dot(outer, outer)) across = inner + self;
         }
         if (differ(self, across)) kind = kEdge;
-        Mixture mixture = mixture_of(own, self, color_inside(p - 3 * to), across);
+        Mixture mixture = mixture_of(own, self, inside == 2 ? color_inside(p - 3 * to) : self, across);
         // An edge of the surface's own may lie that near. Beyond the silhouette's own pixels nothing is mixed, so that another colour
         // than both of its neighbours' is such an edge.
-        vec3 beside = color_inside(p - to);
-        bool is_own = !is_across(p - to, coc_px);
-        if (is_own && (mixture.share == 0.0 || !is_beside(p - to, to, coc_px) && is_other(beside, self, own, across)))
+        if (is_beside_own && inside == 2 && (mixture.share == 0.0 || !is_beside(p - to, to, coc_px) && is_other(beside, self, own, across)))
             mixture = mixture_of(own, beside, self, across);
-        if (mixture.share <= best.share) continue;
+        if (mixture.off_line >= best.off_line) continue;  // the mixture that explains the pixel best, not the one of most light
         best = mixture;
         way = to;
     }
