@@ -35,6 +35,11 @@ void main() {
     }
     Layer over = found.over;
     if (is_reached_far && !is_all) over = both(over, coarse.over);
+#ifdef HAS_KEPT
+    vec4 near = texelFetch(kept, p, 0);
+    float uncovered = 1.0 - max(near.a - over.opacity, 0.0) / max(1.0 - over.opacity, 1e-3);
+    surface.color.rgb = uncovered * surface.color.rgb + (1.0 - uncovered) / max(near.a, 1e-3) * near.rgb;
+#endif
     out_color = over.color + surface.color * (1.0 - over.opacity);
 #ifdef SILHOUETTES
     bool is_hidden = visible_coc < own.coc - kClear;

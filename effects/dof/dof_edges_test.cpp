@@ -154,6 +154,35 @@ TEST(DofEdges, AnAntialiasedEdgeInFocusStaysBeforeANarrowBlur) {
     for (int y = 20; y < 44; ++y) EXPECT_NEAR(out.at(edge, y, 0), mixed, 0.03) << y;
 }
 
+/// The same with one layer, beside a wide blur, and with balls that are a little out of focus.
+TEST(DofEdges, AnAntialiasedEdgeInFocusOrNearlySoStaysBeforeAWideBlur) {
+    constexpr int edge = 47, steps = 64;
+    constexpr float ball = 0.8f, wall = 0.2f;
+    constexpr double radius_px = 16;
+    for (const double ball_px : {0.0, 0.4, 0.8, 1.0})
+        for (const double share : {0.25, 0.4, 0.5}) {
+            const double ball_m =
+                kApertureFocusM / (1 + (kApertureFocusM / kApertureNearM - 1) * ball_px / radius_px);
+            const double mixed = share * double(ball) + (1 - share) * double(wall);
+            const Image out = blurred(
+                [&](int x) {
+                    return x < edge ? Column{ball, float(ball_m)}
+                                    : Column{x == edge ? float(mixed) : wall, kApertureFarM};
+                },
+                radius_px);
+            double opacity = 0;  // mean over the pixel
+            for (int i = 0; i < steps; ++i) {
+                const double to_edge_px = share - (i + 0.5) / steps;
+                opacity += (ball_px > 0      ? disk_left_of(to_edge_px / ball_px)
+                            : to_edge_px > 0 ? 1
+                                             : 0) /
+                           steps;
+            }
+            EXPECT_NEAR(out.at(edge, 32, 0), double(wall) + opacity * double(ball - wall), 0.07)
+                << ball_px << " " << share;
+        }
+}
+
 /// One ray a pixel: a column of the wall has a colour between those of a bar and of the wall beyond it, as a
 /// mixture of both would have. All other silhouettes are sharp, so it is none.
 TEST(DofEdges, TextureBesideASilhouetteIsNoMixtureWhereSilhouettesAreSharp) {

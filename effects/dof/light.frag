@@ -19,6 +19,10 @@ void main() {
     Unmixed alone = unmixed(p, texel.rgb, coc_px);
     texel.rgb = alone.color;
     out_mixture = alone.kind;
+    out_kept = alone.kept;
+#endif
+#if defined(SHARP)
+    out_kept = vec4(0.0);
 #endif
 #if defined(SILHOUETTES) || defined(HORIZON)
     coc_px = horizon_coc(p, coc_px);

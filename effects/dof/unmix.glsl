@@ -70,12 +70,13 @@ const float kNoEdge = 0.0, kEdge = 0.5, kMixture = 1.0;
 struct Unmixed {
     vec3 color;
     float kind;
+    vec4 kept;  // as the texture has it
 };
 
 Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
     Mixture best = Mixture(own, 0.0, 0.0, 1.0);
     ivec2 way = ivec2(0);
-    float kind = kNoEdge;
+    float kind = kNoEdge, best_coc = 0.0;
     // Software GL ends a loop once no pixel of a group goes on, but runs what an if leaves out: so each takes its own neighbours in turn.
     uint across_edge = 0u;
     for (int i = 0; i < 9; ++i)
@@ -89,7 +90,7 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
         bool is_beside_own = !is_across(p - to, coc_px);
         int inside = !is_across(p - 2 * to, coc_px) ? 2 : is_beside_own ? 1 : 3;
         if (inside == 3 && is_across(p - 3 * to, coc_px)) continue;
-        if (abs(min(across_coc, coc_px)) < kLeastBlurredPx) continue;  // a nearer one in focus keeps its antialiasing
+        if (coc_px < across_coc && abs(coc_px) < kLeastBlurredPx) continue;  // in focus, it keeps its antialiasing
         vec3 beside = color_inside(p - to);
         vec3 self = color_inside(p - inside * to), across = color_inside(p + to);
         if (abs(coc_inside(p + 2 * to) - across_coc) <= kOneSurfacePx) {
@@ -105,8 +106,11 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
             mixture = mixture_of(own, beside, self, across);
         if (mixture.off_line >= best.off_line) continue;  // the mixture that explains the pixel best, not the one of most light
         best = mixture;
+        best_coc = across_coc;
         way = to;
     }
-    if (way == ivec2(0) || is_texture(p, own, coc_px, way, best.length_2)) return Unmixed(own, kind);
-    return Unmixed(best.rest, kMixture);
+    if (way == ivec2(0) || is_texture(p, own, coc_px, way, best.length_2)) return Unmixed(own, kind, vec4(0.0));
+    // What is nearer and in focus, or nearly so, keeps its antialiasing before the blur.
+    float seen = best_coc < coc_px ? clamp(kLeastBlurredPx - abs(best_coc), 0.0, 1.0) : 0.0;
+    return Unmixed(best.rest, kMixture, seen * vec4(max(own - (1.0 - best.share) * best.rest, vec3(0.0)), best.share));
 }
