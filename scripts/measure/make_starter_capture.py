@@ -24,27 +24,28 @@ SPHERES: list[Sphere] = [
     ((1.05, 0.20, -6.0), 0.03, (0, 0, 0), (400, 60, 30), (0, 0, 0)),
 ]
 FLOOR_Y, FLOOR_FAR_M = -0.65, 14.0
+MIDDLE = np.zeros(3)  # of the lens
 
 
 def centre(sphere: Sphere, frame: int) -> Array:
     return np.array(sphere[0]) + frame * np.array(sphere[4])
 
 
-def trace(rays: Array, frame: int) -> tuple[Array, Array, Array]:
-    """Nearest hit: distance along the view axis, id (0 nothing, 1 the floor, 2.. spheres), colour."""
+def trace(rays: Array, frame: int, eye: Array = MIDDLE) -> tuple[Array, Array, Array]:
+    """Nearest hit: distance along the view axis, id (0 nothing, 1 the floor, 2.. spheres), colour. `eye`: a point of the lens."""
     depth = np.full(rays.shape[:2], np.inf)
     ids = np.zeros(rays.shape[:2], np.uint32)
     color = np.zeros(rays.shape)
     with np.errstate(divide="ignore"):
-        t = FLOOR_Y / rays[..., 1]  # rays have z = -1, so t is the distance along the axis
+        t = (FLOOR_Y - eye[1]) / rays[..., 1]  # rays have z = -1, so t is the distance along the axis
     floor = (t > 0) & (t < FLOOR_FAR_M)
-    point = rays * np.where(floor, t, 1)[..., None]
+    point = eye + rays * np.where(floor, t, 1)[..., None]
     checks = (np.floor(point[..., 0] * 2) - np.floor(point[..., 2] * 2)) % 2
     shade = 0.15 + LIGHT[1] * shadow(point, frame)
     depth[floor], ids[floor] = t[floor], 1
     color[floor] = (np.where(checks, 0.42, 0.12) * shade)[floor, None] * (1, 0.95, 0.85)
     for index, sphere in enumerate(SPHERES):
-        c, (_, radius, albedo, emission, _) = centre(sphere, frame), sphere
+        c, (_, radius, albedo, emission, _) = centre(sphere, frame) - eye, sphere
         a, b = (rays**2).sum(-1), rays @ c
         root = b * b - a * (c @ c - radius**2)
         t = (b - np.sqrt(np.maximum(root, 0))) / a
@@ -88,6 +89,24 @@ def velocity(depth: Array, ids: Array, frame: int) -> Array:
     return result
 
 
+def sky(rays: Array) -> Array:
+    """Behind everything, from dark blue to warm below: wholly covered, but at no distance."""
+    height = (0.5 - rays[..., 1:2] * FOCAL_PX / HEIGHT - 0.5 / HEIGHT) * HEIGHT / (HEIGHT - 1)
+    return (1 - height) * np.array([0.02, 0.05, 0.16]) + height * np.array([0.55, 0.30, 0.14])
+
+
+def through_lens(frame: int, focus_m: float, radius_m: float, samples: int) -> Array:
+    """The colour through a round thin lens, one ray a sample and pixel, by the R4 sequence (Roberts 2018)."""
+    color = np.zeros((HEIGHT, WIDTH, 3))
+    for i in range(samples):
+        r, turn, dx, dy = (0.5 + i * np.array([0.8566748838545029, 0.733891856627126, 0.6287067210378087, 0.5385972572236101])) % 1
+        eye = radius_m * np.sqrt(r) * np.array([np.cos(2 * np.pi * turn), np.sin(2 * np.pi * turn), 0])
+        rays = rays_at(dx, dy) - eye / focus_m
+        depth, _, part = trace(rays, frame, eye)
+        color += np.where(np.isfinite(depth)[..., None], part, sky(rays)) / samples
+    return color
+
+
 def render(frame: int) -> dict[str, Array]:
     color, alpha = np.zeros((HEIGHT, WIDTH, 3)), np.zeros((HEIGHT, WIDTH))
     steps = (np.arange(SUPERSAMPLES) + 0.5) / SUPERSAMPLES
@@ -96,10 +115,7 @@ def render(frame: int) -> dict[str, Array]:
             depth, _, part = trace(rays_at(dx, dy), frame)
             color += part / SUPERSAMPLES**2
             alpha += np.isfinite(depth) / SUPERSAMPLES**2
-    # A sky behind everything, from dark blue to warm below: wholly covered, but at no distance.
-    height = np.linspace(0, 1, HEIGHT)[:, None]
-    sky = (1 - height)[..., None] * np.array([0.02, 0.05, 0.16]) + height[..., None] * np.array([0.55, 0.30, 0.14])
-    color += sky * (1 - alpha)[..., None]
+    color += sky(rays_at(0.5, 0.5)) * (1 - alpha)[..., None]
     depth, ids, _ = trace(rays_at(0.5, 0.5), frame)
     motion = velocity(depth, ids, frame)
     half, single = np.float16, np.float32

@@ -1,7 +1,7 @@
 """How far each effect of the depth-of-field family in effects/ is from the lens: the figures and pictures of docs/quality-dof.md.
 Scenes are rendered once and kept in build/quality-dof. With blender installed, its Defocus node stands beside.
 
-    PARTS="suzanne scenes shape"   these alone; the others stay as they are
+    PARTS="suzanne scenes edges shape"   these alone; the others stay as they are
     AFTERSHADE=FILE                another executable, and no build
     AFTERSHADE_CAPTURES=DIR        where suzanne lies (docs/measures.md)
     AFTERSHADE_EFFECTS=A:B         further folders of effects, before this tree's own
@@ -17,6 +17,7 @@ from PIL import Image
 from measure import scenes
 from measure.dof_family import FAMILY, Effect, effects, run_effect
 from measure.exr import RGB, read_exr
+from measure.make_starter_capture import through_lens
 from measure.measures import Array, bytes_of, coc_px, iou, near_band, polygon_coverage, psnr_db
 from measure.pages import Blocks, Page, table
 from measure.tree import CAPTURES, ROOT, Document, command
@@ -27,6 +28,9 @@ IMAGES = ROOT / "docs/images/dof"
 CITED = [("Blender's Defocus node at f-stops tried by hand, cited", "20.3 to 21.1"), ("30 depth layers by FFT in double precision, cited", "30.2")]
 SUZANNE = {"focus_distance": 6.4, "focal_length": 50, "f_number": 0.25, "sensor_width": 36, "lens_model": "pinhole"}
 UNSEEN = (slice(0, 20), slice(0, 60))  # rows, columns that a bulb beyond the frame's edge lights in the lens' picture
+# Focus distance in m, f-number of the 50 mm lens: in front of all balls, on three of them, behind.
+STARTER_LENSES = [(2.6, 0.5), (3.05, 0.25), (3.6, 0.5), (5.0, 0.25), (8.0, 0.5)]
+STARTER_CROP = (slice(55, 120), slice(95, 215))
 CROPS = {"bulbs": (560, 40, 240, 150), "head": (300, 150, 240, 150)}  # x, y, w, h
 
 
@@ -129,6 +133,24 @@ def one_scene(name: str, scene: Document, frame: int, focused: list[str], family
     return result
 
 
+def antialiased(family: list[Effect]) -> dict[tuple[float, float], dict[str, float]]:
+    """The shipped starter capture, whose colour is antialiased and whose depth is one sample, against the lens of its own tracer."""
+    capture, found = ROOT / "scenes/starter/gbuffer_0001.exr", {}
+    for focus_m, f_number in STARTER_LENSES:
+        truth = through_lens(1, focus_m, 0.05 / f_number / 2, 512)
+        params = {"focus_distance": focus_m, "f_number": f_number, "focal_length": 50, "sensor_width": 36}
+        shown = {"sharp": read_exr(capture)}
+        for effect in family:
+            aperture = effect.with_blades(0) or effect.closest_to_hexagon()
+            shown[effect.id] = run_effect(effect.id, capture, WORK / "out.exr", params | aperture, WORK)
+        found[focus_m, f_number] = {name: psnr_db(truth, picture) for name, picture in shown.items()}
+        if (focus_m, f_number) == STARTER_LENSES[1]:
+            tiles = [picture[STARTER_CROP].repeat(4, 0).repeat(4, 1) for picture in (shown["sharp"], shown["bokeh_gather"], shown["dof"], truth)]
+            tiles = [numpy.pad(tile, ((0, 4), (0, 4), (0, 0)), constant_values=1) for tile in tiles]
+            save(numpy.concatenate([numpy.concatenate(tiles[:2], axis=1), numpy.concatenate(tiles[2:], axis=1)])[:-4, :-4], "antialiased", 1)
+    return found
+
+
 def shapes(family: list[Effect]) -> dict[tuple[str, int, str], tuple[float, float]]:
     """{(effect, blades, side): (IoU of the worst lamp, its energy)}; effects that have no such aperture are left out."""
     found = {}
@@ -218,6 +240,16 @@ def on_scenes() -> Blocks:
     return blocks
 
 
+def on_edges() -> Blocks:
+    found = antialiased(effects())
+    names = list(next(iter(found.values())))
+    rows = []
+    for (focus_m, f_number), values in found.items():
+        print(f"starter {focus_m} m f/{f_number}", ", ".join(f"{name} {value:.2f}" for name, value in values.items()), flush=True)
+        rows.append([f"{focus_m:g} m, f/{f_number:g}", *(cell(values[name], best=max(values.values())) for name in names)])
+    return {"edges": table(["focus", *map(named, names)], rows)}
+
+
 def on_shapes() -> Blocks:
     found = shapes(effects())
     for (name, blades, side), (shape, energy) in found.items():
@@ -230,10 +262,10 @@ def on_shapes() -> Blocks:
 
 
 def main() -> None:
-    page = Page("quality-dof.md", "scripts/quality dof", ["suzanne", "crops", "all", "band", "leak", "pictures", "shape"])
+    page = Page("quality-dof.md", "scripts/quality dof", ["suzanne", "crops", "all", "band", "leak", "pictures", "edges", "shape"])
     for folder in WORK, IMAGES:
         folder.mkdir(parents=True, exist_ok=True)
-    page.make({"suzanne": on_suzanne, "scenes": on_scenes, "shape": on_shapes})
+    page.make({"suzanne": on_suzanne, "scenes": on_scenes, "edges": on_edges, "shape": on_shapes})
 
 
 if __name__ == "__main__":
