@@ -183,6 +183,28 @@ TEST(DofEdges, AnAntialiasedEdgeInFocusOrNearlySoStaysBeforeAWideBlur) {
         }
 }
 
+/// One ray a pixel: a near ball is darker towards its edge, where its last pixel has a colour between the
+/// ball's and the wall's. Each pixel keeps its light.
+TEST(DofEdges, TheShadingOfARoundSurfaceIsNoMixtureWhereSilhouettesAreSharp) {
+    constexpr int left = 40, right = 72;
+    constexpr float wall = 0.1f;
+    constexpr double radius_px = 3;
+    const auto light_at = [](int x) {
+        const int inside = std::min(x - left, right - 1 - x);
+        return inside < 0 ? wall : inside == 0 ? 0.5f : inside == 1 ? 0.75f : 0.8f;
+    };
+    const Image out = blurred(
+        [&](int x) {
+            return Column{light_at(x), x >= left && x < right ? kApertureNearM : kApertureFocusM};
+        },
+        radius_px);
+    for (int x = left - 4; x < left + 4; ++x) {
+        double light = (1 - opacity_of(left, right, x, radius_px)) * double(wall);
+        for (int i = left; i < right; ++i) light += opacity_of(i, i + 1, x, radius_px) * double(light_at(i));
+        EXPECT_NEAR(out.at(x, 32, 0), light, 0.02) << x;
+    }
+}
+
 /// One ray a pixel: a column of the wall has a colour between those of a bar and of the wall beyond it, as a
 /// mixture of both would have. All other silhouettes are sharp, so it is none.
 TEST(DofEdges, TextureBesideASilhouetteIsNoMixtureWhereSilhouettesAreSharp) {

@@ -10,7 +10,7 @@ void main() {
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
             float kind = texelFetch(mixture, min(kTile * tile + ivec2(x, y), last), 0).r;
-            sum += vec2(kind > 0.75 ? 1.0 : 0.0, kind > 0.25 ? 1.0 : 0.0);
+            sum += vec2(kind > 0.9 ? 1.0 : 0.0, kind > 0.25 ? 1.0 : 0.0);
         }
     out_mixtures = sum;
 }

@@ -65,7 +65,7 @@ bool is_other(vec3 color, vec3 a, vec3 b, vec3 across) {
 }
 
 // As the texture `mixture` keeps them.
-const float kNoEdge = 0.0, kEdge = 0.5, kMixture = 1.0;
+const float kNoEdge = 0.0, kEdge = 0.5, kNearMixture = 0.8, kMixture = 1.0;
 
 struct Unmixed {
     vec3 color;
@@ -112,5 +112,5 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
     if (way == ivec2(0) || is_texture(p, own, coc_px, way, best.length_2)) return Unmixed(own, kind, vec4(0.0));
     // What is nearer and in focus, or nearly so, keeps its antialiasing before the blur.
     float seen = best_coc < coc_px ? clamp(kLeastBlurredPx - abs(best_coc), 0.0, 1.0) : 0.0;
-    return Unmixed(best.rest, kMixture, seen * vec4(max(own - (1.0 - best.share) * best.rest, vec3(0.0)), best.share));
+    return Unmixed(best.rest, best_coc < coc_px ? kMixture : kNearMixture, seen * vec4(max(own - (1.0 - best.share) * best.rest, vec3(0.0)), best.share));
 }

@@ -1,7 +1,8 @@
 #include "mixed_tiles.glsl"
 
-// Antialiasing mixes a third of the pixels at silhouettes. With one ray a pixel, texture looks like a mixture at a few of them.
-const float kLeastMixed = 0.15;
+// Antialiasing mixes a third of the pixels at silhouettes, on both sides alike. With one ray a pixel, texture looks like a mixture at a
+// few of them, and the shading of a round surface at many, but on the near side alone.
+const float kLeastMixed = 0.08;  // on the far side
 const int kAround = 3;  // tiles
 
 bool unmixed_tiles(ivec2 tile) {
