@@ -252,6 +252,28 @@ TEST(DofEdges, AGapOfOneOrTwoPixelsBetweenBarsShowsTheWallWithoutTheirLight) {
     }
 }
 
+/// The right side of a bar lies in shade, as dark as two thirds of the wall's light would make it. The
+/// bar's depth there says that less than half of the pixel is wall.
+TEST(DofEdges, TheShadedSideOfANearBarIsNoMixture) {
+    constexpr float wall = 0.15f, bar = 0.6f, shade = 0.3f;
+    constexpr double radius_px = 8;
+    constexpr int left = 60, right = 64;
+    const Image out = blurred(
+        [&](int x) {
+            if (x >= left && x < right) return Column{x == right - 1 ? shade : bar, kApertureNearM};
+            // A bar between two columns that antialiasing mixed: without mixtures nearby, nothing is taken
+            // for one.
+            const float cover = x == 19 ? 0.4f : x == 23 ? 0.6f : x > 19 && x < 23 ? 1.0f : 0.0f;
+            return Column{cover * bar + (1 - cover) * wall, cover > 0.5f ? kApertureNearM : kApertureFocusM};
+        },
+        radius_px);
+    for (int x = left - 2; x < right + 2; ++x) {
+        const double lit = opacity_of(left, right - 1, x, radius_px);
+        const double shaded = opacity_of(right - 1, right, x, radius_px);
+        EXPECT_NEAR(out.at(x, 32, 0), lit * bar + shaded * shade + (1 - lit - shaded) * wall, 0.01) << x;
+    }
+}
+
 /// In tiles near the upper right bar a blur may come from afar, so what lies in front is gathered at half
 /// size. Below row 48 it is gathered at full size.
 TEST(DofEdges, ABlurContinuesBelowTilesThatAWiderOneReaches) {

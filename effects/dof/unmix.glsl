@@ -4,7 +4,9 @@
 
 vec3 color_inside(ivec2 p) { return texelFetch(color, clamp(p, ivec2(0), frame.size - 1), 0).rgb; }
 
-const float kLeastShare = 0.1, kMostShare = 0.7;
+// Of light from across, in a mixture. A pixel's depth is that of its middle, so that most of its light is its own surface's; but wires that
+// miss the middle may cover more of it.
+const float kLeastShare = 0.1, kMostShare = 0.5, kMostShareOfNear = 0.6;
 const float kLeastBlurredPx = 2.0;
 const float kContrast = 0.15;  // of two surfaces, below which a mixture cannot be seen
 const float kOffLine = 0.03;   // squared distance from the line between both colours, of its length squared
@@ -29,9 +31,8 @@ bool is_texture(ivec2 p, vec3 own, float coc_px, ivec2 to, float length_2) {
 
 struct Mixture {
     vec3 rest;       // light without what came from across
-    float share;     // 0 where p is no mixture
     float length_2;
-    float off_line;  // as kOffLine
+    float off_line;  // as kOffLine; 1 where p is no mixture
 };
 
 bool differ(vec3 self, vec3 across) {
@@ -39,17 +40,17 @@ bool differ(vec3 self, vec3 across) {
 }
 
 // p as a mixture of a colour of its own surface and one from across. beyond: further inside than self.
-Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across) {
+Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across, float most_share) {
     vec3 difference = across - self, change = self - beyond;
     float length_2 = dot(difference, difference);
-    const Mixture none = Mixture(vec3(0.0), 0.0, 0.0, 1.0);
+    const Mixture none = Mixture(vec3(0.0), 0.0, 1.0);
     if (!differ(self, across)) return none;
     // Shading that continues as it does inside the surface is not a mixture.
     float share = (dot(own - self, difference) - 2.0 * max(dot(change, difference), 0.0)) / length_2;
     vec3 rest = own - self - share * difference;
     float off_line = max(dot(rest, rest), dot(change, change)) / length_2;
-    if (share <= kLeastShare || share > kMostShare || off_line > kOffLine) return none;
-    return Mixture(max(own - share * difference, min(own, self)), share, length_2, off_line);
+    if (share <= kLeastShare || share > most_share || off_line > kOffLine) return none;
+    return Mixture(max(own - share * difference, min(own, self)), length_2, off_line);
 }
 
 // Whether what lies across reaches a pixel of the surface from one of its sides.
@@ -74,7 +75,7 @@ struct Unmixed {
 };
 
 Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
-    Mixture best = Mixture(own, 0.0, 0.0, 1.0);
+    Mixture best = Mixture(own, 0.0, 1.0);
     ivec2 way = ivec2(0);
     float kind = kNoEdge, best_coc = 0.0;
     // Software GL ends a loop once no pixel of a group goes on, but runs what an if leaves out: so each takes its own neighbours in turn.
@@ -98,13 +99,14 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
             vec3 inner = color_inside(p + 2 * to) - self, outer = across - self;
             if (dot(inner, inner) > dot(outer, outer)) across = inner + self;
         }
+        float most_share = across_coc < coc_px ? kMostShareOfNear : kMostShare;
         if (differ(self, across)) kind = kEdge;
-        Mixture mixture = mixture_of(own, self, inside == 2 ? color_inside(p - 3 * to) : self, across);
+        Mixture mixture = mixture_of(own, self, inside == 2 ? color_inside(p - 3 * to) : self, across, most_share);
         // An edge of the surface's own may lie that near. Beyond the silhouette's own pixels nothing is mixed, so that another colour
         // than both of its neighbours' is such an edge.
-        if (is_beside_own && inside == 2 && (mixture.share == 0.0 || !is_beside(p - to, to, coc_px) && is_other(beside, self, own, across)))
-            mixture = mixture_of(own, beside, self, across);
-        if (mixture.off_line >= best.off_line) continue;  // the mixture that explains the pixel best, not the one of most light
+        if (is_beside_own && inside == 2 && (mixture.off_line > kOffLine || !is_beside(p - to, to, coc_px) && is_other(beside, self, own, across)))
+            mixture = mixture_of(own, beside, self, across, most_share);
+        if (mixture.off_line >= best.off_line) continue;  // the two colours that explain the pixel best
         best = mixture;
         best_coc = across_coc;
         way = to;
