@@ -31,6 +31,7 @@ bool is_texture(ivec2 p, vec3 own, float coc_px, ivec2 to, float length_2) {
 
 struct Mixture {
     vec3 rest;       // light without what came from across
+    float share;     // of that
     float length_2;
     float off_line;  // as kOffLine; 1 where p is no mixture
 };
@@ -43,14 +44,14 @@ bool differ(vec3 self, vec3 across) {
 Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across, float most_share) {
     vec3 difference = across - self, change = self - beyond;
     float length_2 = dot(difference, difference);
-    const Mixture none = Mixture(vec3(0.0), 0.0, 1.0);
+    const Mixture none = Mixture(vec3(0.0), 0.0, 0.0, 1.0);
     if (!differ(self, across)) return none;
     // Shading that continues as it does inside the surface is not a mixture.
     float share = (dot(own - self, difference) - 2.0 * max(dot(change, difference), 0.0)) / length_2;
     vec3 rest = own - self - share * difference;
     float off_line = max(dot(rest, rest), dot(change, change)) / length_2;
     if (share <= kLeastShare || share > most_share || off_line > kOffLine) return none;
-    return Mixture(max(own - share * difference, min(own, self)), length_2, off_line);
+    return Mixture(max(own - share * difference, min(own, self)), share, length_2, off_line);
 }
 
 // Whether what lies across reaches a pixel of the surface from one of its sides.
@@ -75,7 +76,7 @@ struct Unmixed {
 };
 
 Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
-    Mixture best = Mixture(own, 0.0, 1.0);
+    Mixture best = Mixture(own, 0.0, 0.0, 1.0);
     ivec2 way = ivec2(0);
     float kind = kNoEdge, best_coc = 0.0;
     // Software GL ends a loop once no pixel of a group goes on, but runs what an if leaves out: so each takes its own neighbours in turn.
