@@ -1,5 +1,6 @@
 // Alpha, further sets of texture coordinates and KHR_texture_transform of glTF, against closed forms.
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <numbers>
 
@@ -134,6 +135,29 @@ TEST(GltfAlpha, OfBlendAndMaskHideTheColoursOfTexelsWithoutAlpha) {
         }
     const Capture opaque = speckled_capture(64, "", leaf);
     EXPECT_NEAR(pixel_of(opaque, "albedo", 3, 3).y, 0.5, 0.003) << "alpha is ignored there";
+}
+
+/// A mesh is asked for its materials once, not for each object that it is.
+TEST(GltfAlpha, OfCopiesIsThatOfTheirMeshUnlessTheyHaveAMaterial) {
+    const auto geometry_s = [](std::size_t copies) {
+        Scene scene;
+        scene.materials.resize(3);
+        scene.materials[1].blends = true;
+        Mesh& mesh = scene.meshes.emplace_back();
+        mesh.vertices.resize(3);
+        mesh.triangles.resize(20'000, {0, 1, 2});
+        mesh.materials.resize(mesh.triangles.size(), 1);
+        scene.objects.resize(copies);
+        for (Object& object : scene.objects) object.shape = {ShapeKind::mesh, {}, 0};
+        for (std::size_t i = 0; i < copies; ++i) scene.objects[i].has_mesh_materials = i % 3 != 2;
+        const std::clock_t start = std::clock();
+        const Geometry geometry(scene);
+        const double time_s = double(std::clock() - start) / CLOCKS_PER_SEC;
+        for (std::size_t i = 0; i < copies; ++i)
+            EXPECT_EQ(geometry.alpha_of(i).is_mixed, scene.objects[i].has_mesh_materials) << i;
+        return time_s;
+    };
+    EXPECT_LT(geometry_s(10'000), 4 * geometry_s(1) + 0.05);
 }
 
 /// The quad of alpha 0 in its left half and `right` in the other, between the sun and a floor that the camera
