@@ -33,7 +33,7 @@ scene::CacheReplay GlVisibility::fill(const scene::SampleIds& samples, const sce
         cache.cache == scene::ShadingCache::tile || cache.cache == scene::ShadingCache::sorted;
     visibility::FilledCache filled =
         cache.cache == scene::ShadingCache::fifo
-            ? visibility::fill_buckets(passes_, samples, cache.entries)
+            ? visibility::fill_buckets(passes_, samples, cache.entries, cache.tile_px)
             : visibility::fill_tables(passes_, samples, grids.id_count(), is_of_tiles ? cache.tile_px : 0);
     counts_.push_back(filled.counts);
     return std::move(filled.replay);

@@ -7,20 +7,16 @@
 
 #include <gtest/gtest.h>
 
+#include "effects/dof/dof_bars.h"
 #include "framework/image/role.h"
 #include "tests/aperture_checks.h"
 
 namespace aftershade::test::dof_edges {
 namespace {
 
-constexpr int kWidth = 96, kHeight = 64;
-constexpr double kPi = 3.14159265358979;
+using dof::disk_left_of;
 
-/// Share of a disk's area left of a line at `t` radii from its middle.
-double disk_left_of(double t) {
-    t = std::clamp(t, -1.0, 1.0);
-    return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
-}
+constexpr int kWidth = 96, kHeight = 64;
 
 /// Opacity at the middle of column `x` of what covers the columns from `left` to `right`, through a disk.
 double opacity_of(double left, double right, int x, double radius_px) {

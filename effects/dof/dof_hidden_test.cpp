@@ -8,58 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include "effects/dof/dof_bars.h"
 #include "framework/image/role.h"
-#include "tests/aperture_checks.h"
 #include "tests/render/effect_fixture.h"
 
 namespace aftershade::test::dof {
 namespace {
-
-constexpr int kWidth = 96, kHeight = 64;
-constexpr double kRadiusPx = 16, kPi = 3.14159265358979;
-
-/// Stripes along x, so that what a vertical bar hides is what stands beside it.
-float stripe(int y) {
-    return y / 8 % 2 == 0 ? 0.8f : 0.2f;
-}
-
-/// Columns from `left` on lie in front of stripes in focus; each has a light and a depth of its own.
-struct Column {
-    float light;
-    bool is_near;
-    float of_stripes = 0;  ///< share of the light behind that antialiasing mixed in
-};
-
-Capture columns_over_stripes(int left, const std::vector<Column>& columns) {
-    Capture capture =
-        make_capture({.width = kWidth, .height = kHeight, .background_depth_m = kApertureFocusM}, 0);
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-            const int i = x - left;
-            const bool is_bar = i >= 0 && i < int(columns.size());
-            const Column column = is_bar ? columns[std::size_t(i)] : Column{0, false, 1};
-            for (int c = 0; c < 3; ++c)
-                capture.images["color"].at(x, y, c) =
-                    column.light * (1 - column.of_stripes) + stripe(y) * column.of_stripes;
-            if (column.is_near) capture.images["depth"].at(x, y, 0) = kApertureFocusM / 2;
-        }
-    return capture;
-}
-
-/// Share of a disk's area left of a line at `t` radii from its middle.
-double disk_left_of(double t) {
-    t = std::clamp(t, -1.0, 1.0);
-    return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
-}
-
-/// Opacity at the middle of column `x` of a bar from `left` to `right`, px, through a disk.
-double bar_opacity(int x, double left, double right) {
-    return disk_left_of((right - x - 0.5) / kRadiusPx) - disk_left_of((left - x - 0.5) / kRadiusPx);
-}
-
-Image blurred(const Capture& capture) {
-    return through_aperture("dof", capture, kRadiusPx, R"("blades": 0)");
-}
 
 Image through_neighbours(const FrameInputs& frame, const std::string& background) {
     const std::string more = R"("blades": 0, "background": ")" + background + "\"";
@@ -291,117 +245,6 @@ TEST(DofHidden, AmongTheViewsOfNeighboursOneLikeTheSurroundingsIsTaken) {
     for (int x = column - 8; x <= column + 8; ++x)
         EXPECT_NEAR(out.at(x, row, 0), opacity * wire + (1 - opacity) * (x + 0.5 < edge ? light : dark), 0.05)
             << x;
-}
-
-/// A patch is never brighter than what it continues: a light in focus beside a wire stays as large as it is.
-TEST(DofHidden, ALightBesideAWireIsNotContinuedBehindIt) {
-    const Column wire{0.05f, true};
-    Capture capture = columns_over_stripes(47, {wire, wire, wire});
-    for (int y = 30; y < 33; ++y)
-        for (int x = 50; x < 53; ++x)
-            for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = 40;
-    const Image out = blurred(capture);
-    for (int y = 29; y < 34; ++y)
-        for (int x = 46; x < 50; ++x) EXPECT_LE(out.at(x, y, 0), 1) << x << " " << y;
-}
-
-/// A wire crosses an antialiased lamp in focus: pixels that both share have the wire's depth and much of the
-/// lamp's light, and pixels of the stripes beside them take it for a light of the wire.
-TEST(DofHidden, ALampBehindAWireThrowsNoDiskOfTheWires) {
-    Capture capture = columns_over_stripes(47, {{0.05f, true}});
-    const auto light = [&](int x, int y, float amount) {
-        for (int c = 0; c < 3; ++c) capture.images["color"].at(x, y, c) = amount;
-    };
-    for (const int y : {31, 32}) {
-        light(47, y, 25);
-        light(48, y, 40);
-        light(49, y, 40);
-    }
-    for (const int y : {30, 33}) {
-        light(48, y, 20);
-        light(49, y, 20);
-    }
-    const Image out = blurred(capture);
-    // The wire lacks the two pixels that the lamp has.
-    for (int y = 20; y < 44; ++y) {
-        if (y % 8 < 2 || y % 8 > 5) continue;
-        for (int x = 32; x < 64; ++x) {
-            if (std::hypot(x - 48, y - 32) < 4) continue;
-            const double opacity = bar_opacity(x, 47, 48);
-            EXPECT_NEAR(out.at(x, y, 0), opacity * 0.05 + (1 - opacity) * double(stripe(y)), 0.025)
-                << x << " " << y;
-        }
-    }
-}
-
-/// Across a wire's side the darker stripe is like a mixture of the lighter one and the wire. It is none: the
-/// stripe goes on.
-TEST(DofHidden, AnEdgeOfWhatIsInFocusStaysSharpBesideAWire) {
-    Capture capture = columns_over_stripes(47, {{0.02f, true}, {0.02f, true}});
-    const auto half = [](int y) { return y < 32 ? 0.5f : 0.18f; };
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-            for (int c = 0; c < 3 && x != 47 && x != 48; ++c) capture.images["color"].at(x, y, c) = half(y);
-    const Image out = blurred(capture);
-    for (int y = 28; y < 36; ++y)
-        for (const int x : {45, 46, 49, 50}) {
-            const double opacity = bar_opacity(x, 47, 49);
-            EXPECT_NEAR(out.at(x, y, 0), opacity * 0.02 + (1 - opacity) * double(half(y)), 0.02)
-                << x << " " << y;
-        }
-}
-
-// Short chords across the pole all have unlike ends; those along the edge alone say on which side of it a
-// pixel lies.
-TEST(DofHidden, AnEdgeThatCrossesAPoleAtASmallAngleGoesOnBehindIt) {
-    constexpr int kEdge = kWidth / 2;
-    constexpr double kSlope = 1.0 / 6, kHalfWidthPx = 1.5, kPole = 0.05;
-    const auto beside = [](int x) { return x < kEdge ? 0.8f : 0.2f; };
-    const auto off_pole = [](int x, int y) { return x + 0.5 - kEdge - kSlope * (y + 0.5 - kHeight / 2); };
-    Capture capture =
-        make_capture({.width = kWidth, .height = kHeight, .background_depth_m = kApertureFocusM}, 0);
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-            const bool is_pole = std::abs(off_pole(x, y)) < kHalfWidthPx;
-            for (int c = 0; c < 3; ++c)
-                capture.images["color"].at(x, y, c) = is_pole ? float(kPole) : beside(x);
-            if (is_pole) capture.images["depth"].at(x, y, 0) = kApertureFocusM / 2;
-        }
-    const Image out = blurred(capture);
-    const double across = 1 / std::sqrt(1 + kSlope * kSlope) / kRadiusPx;
-    double error = 0;
-    int count = 0;
-    for (int y = 24; y < 40; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-            const double off = off_pole(x, y);
-            if (std::abs(off) >= kHalfWidthPx) continue;
-            const double opacity =
-                disk_left_of((kHalfWidthPx - off) * across) - disk_left_of((-kHalfWidthPx - off) * across);
-            error += std::abs(out.at(x, y, 0) - opacity * kPole - (1 - opacity) * double(beside(x)));
-            ++count;
-        }
-    EXPECT_LT(error / count, 0.125);  // by 12 chords of any length it was 0.154
-}
-
-/// A chord that ends at the border, beyond which nothing is known, takes nothing from there.
-TEST(DofHidden, APoleAtTheRightBorderIsTheMirroredOneAtTheLeft) {
-    const auto with_pole = [](bool at_right) {
-        Capture capture =
-            make_capture({.width = kWidth, .height = kHeight, .background_depth_m = kApertureFocusM}, 0);
-        for (int y = 0; y < kHeight; ++y)
-            for (int x = 0; x < kWidth; ++x) {
-                const int from_border = at_right ? kWidth - 1 - x : x;
-                const float stripe = (from_border + 2 * y) % 16 < 8 ? 0.8f : 0.2f;
-                for (int c = 0; c < 3; ++c)
-                    capture.images["color"].at(x, y, c) = from_border < 3 ? 0.05f : stripe;
-                if (from_border < 3) capture.images["depth"].at(x, y, 0) = kApertureFocusM / 2;
-            }
-        return blurred(capture);
-    };
-    const Image right = with_pole(true), left = with_pole(false);
-    for (int y = 8; y < kHeight - 8; ++y)
-        for (int x = 0; x < 12; ++x)
-            ASSERT_NEAR(right.at(kWidth - 1 - x, y, 0), left.at(x, y, 0), 1e-3) << x << " " << y;
 }
 
 }  // namespace

@@ -241,6 +241,15 @@ void prepare_output_folder(const fs::path& file) {
     remove_stale_temporaries(folder);
 }
 
+void AtomicFile::copy_from(const fs::path& file) {
+    std::error_code failure;
+    errno = 0;  // libstdc++ calls a full disk an input/output error
+    fs::copy_file(file, temporary_path_, fs::copy_options::overwrite_existing, failure);
+    if (failure)
+        throw Error(ErrorKind::output,
+                    final_path_.string() + ": " + (errno ? std::strerror(errno) : failure.message()));
+}
+
 void AtomicFile::commit(Flush flush) {
     const auto fail = [&](const char* step) {
         throw Error(ErrorKind::output, final_path_.string() + ": " + step + ": " + std::strerror(errno));

@@ -1,8 +1,6 @@
 #include "framework/golden/golden_approve.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <list>
 #include <map>
 #include <mutex>
@@ -53,13 +51,7 @@ std::vector<ApprovedImage> approved_of(const GoldenCase& test, const GoldenEnvir
 class Staging {
 public:
     void add_image(const fs::path& target, const fs::path& image) {
-        AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));
-        std::error_code failure;
-        errno = 0;  // libstdc++ calls a full disk an input/output error
-        fs::copy_file(image, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
-        if (failure)
-            throw Error(ErrorKind::output,
-                        target.string() + ": " + (errno ? std::strerror(errno) : failure.message()));
+        files_.emplace_back(path_below(target.parent_path(), target.filename())).copy_from(image);
     }
     void add_text(const fs::path& target, const std::string& text) {
         AtomicFile& file = files_.emplace_back(path_below(target.parent_path(), target.filename()));

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -127,12 +125,7 @@ double difference_scale(const GoldenImage& result, const CompareRules& rules) {
 
 void copy_into(const fs::path& from, const fs::path& to) {
     AtomicFile file(to);
-    std::error_code failure;
-    errno = 0;  // libstdc++ calls a full disk an input/output error
-    fs::copy_file(from, file.temporary_path(), fs::copy_options::overwrite_existing, failure);
-    if (failure)
-        throw Error(ErrorKind::output,
-                    to.string() + ": " + (errno ? std::strerror(errno) : failure.message()));
+    file.copy_from(from);
     file.commit();
 }
 

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
+
+#include "framework/graph/executor.h"
+#include "framework/image/role.h"
+#include "framework/look/pipeline.h"
 
 namespace aftershade {
 
@@ -18,18 +21,14 @@ struct AuditFinding {
     int y = 0;
 };
 
-/// An audited image, and its name in a finding. [refers to the values]
-struct AuditedImage {
-    std::span<const float> values;
-    int width = 0;
-    int channels = 0;
-    bool infinity_allowed = false;  ///< depth, where +inf is nothing hit
-    std::string pass{};
-    std::string texture{};
-};
+/// Looks at every value of a role's image of floats; adds a finding if there is one to report. Infinity is
+/// one unless the role has it outside: a depth of +inf is nothing hit.
+void audit_image(const RoleId& role, const Image& image, const std::string& pass, const std::string& texture,
+                 std::vector<AuditFinding>& findings);
 
-/// Looks at every value; adds a finding if there is one to report.
-void audit_values(const AuditedImage& image, std::vector<AuditFinding>& findings);
+/// Looks at every texture of floats that passes write; integer textures hold ids and packed bits, of which no
+/// value is wrong. `findings` must outlive it.
+graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<AuditFinding>& findings);
 
 /// "bokeh.second: bokeh.color has 12 NaN and 3 infinite values, the first at (10, 4)".
 std::string describe_finding(const AuditFinding& finding);

@@ -1,111 +1,20 @@
 #include "framework/render/renderer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "framework/base/error.h"
-#include "framework/effect/color_param.h"
 #include "framework/gpu/timer.h"
-#include "framework/image/role.h"
 #include "framework/look/pipeline.h"
 #include "framework/look/pixel_shape.h"
 #include "framework/render/draw_with.h"
 #include "framework/render/graph_builder.h"
 #include "framework/render/history_file.h"
-#include "framework/render/step_files.h"
 
 namespace aftershade {
-
-namespace {
-
-// What the numbers of a frame's colours mean where OpenColorIO has taken them to another space.
-
-bool outputs(const PipelineStep& step, const std::string& role) {
-    return std::ranges::find(step.manifest->outputs, role, &OutputSpec::role) != step.manifest->outputs.end();
-}
-
-bool takes(const PipelineStep& step, const std::string& role) {
-    return std::ranges::find(step.manifest->inputs, role, &InputSpec::role) != step.manifest->inputs.end();
-}
-
-const ParamSpec* config_of(const PipelineStep& step) {
-    const auto& params = step.manifest->params;
-    const auto config = std::ranges::find(params, FileKind::ocio_config, &ParamSpec::file_kind);
-    return config == params.end() ? nullptr : &*config;
-}
-
-/// Unknown where the step's file is not loaded.
-ColorEncoding made_by(const StepFiles& files, int index, const ParamSpec& config) {
-    const auto* transform = std::get_if<ColorTransform>(files.loaded(index, config.name));
-    return transform ? transform->encoding : ColorTransform{}.encoding;
-}
-
-/// Whether the step's conversion is to a space, not back to the capture's primaries.
-bool has_destination(const PipelineStep& step) {
-    return std::ranges::any_of(step.manifest->params, [&](const ParamSpec& spec) {
-        return spec.ocio == "destination" &&
-               std::ranges::any_of(step.known_values(spec), [](const ParamValue& value) {
-                   return !std::get<std::string>(value).empty();
-               });
-    });
-}
-
-/// Sets the encodings of `display` and `color` by the last steps that made them of other images, with the
-/// transforms that the steps' files are of now.
-void set_encodings(const Pipeline& pipeline, const StepFiles& files, FrameResult& result) {
-    for (int index = int(pipeline.steps.size()) - 1; index >= 0; --index) {
-        const PipelineStep& step = pipeline.steps[std::size_t(index)];
-        const ParamSpec* const config = config_of(step);
-        if (!outputs(step, kDisplayRole) || (!config && takes(step, kDisplayRole))) continue;
-        if (config) result.display_encoding = made_by(files, index, *config);
-        break;
-    }
-    for (int index = int(pipeline.steps.size()) - 1; index >= 0; --index) {
-        const PipelineStep& step = pipeline.steps[std::size_t(index)];
-        const ParamSpec* const config = config_of(step);
-        if (!config || !outputs(step, kColorRole)) continue;
-        if (has_destination(step)) result.color_encoding = made_by(files, index, *config);
-        break;
-    }
-}
-
-bool infinity_allowed(const RoleId& role) {
-    return std::isinf(find_role(role)->outside);
-}
-
-void audit_input(const RoleId& role, const Image& image, std::vector<AuditFinding>& findings) {
-    if (image.type() != ComponentType::float32) return;
-    audit_values({image.floats(), image.width(), image.channels(), infinity_allowed(role), "capture",
-                  "capture." + role.name()},
-                 findings);
-}
-
-/// Integer textures hold ids and packed bits, of which no value is wrong.
-graph::Executor::PassObserver auditor(const Pipeline& pipeline, std::vector<AuditFinding>& findings) {
-    std::map<std::string, std::string> role_of_output;
-    for (const PipelineStep& step : pipeline.steps)
-        for (const OutputSpec& output : step.manifest->outputs)
-            role_of_output[step.name + "." + output.name] = output.role;
-    return [role_of_output, &findings](const std::string& pass, const std::string& texture,
-                                       const gpu::Texture& target) {
-        const gpu::TextureDesc& desc = target.desc();
-        if (gpu::is_integer(desc.format)) return;
-        // What these write has been looked at.
-        for (const char* grid : {kToSquarePixels, kToStoredPixels, kToDisplayWindow, kToDataWindow})
-            if (texture.ends_with(grid)) return;
-        const auto role = role_of_output.find(texture);
-        const bool infinity = role != role_of_output.end() && infinity_allowed(role->second);
-        const std::vector<float> values = target.read_floats();
-        audit_values({values, desc.width, gpu::channel_count(desc.format), infinity, pass, texture},
-                     findings);
-    };
-}
-
-}  // namespace
 
 PipelineRenderer::PipelineRenderer(gpu::Context& context, const Pipeline& pipeline,
                                    const std::filesystem::path& data_folder, NativeSources natives,
@@ -314,10 +223,11 @@ PendingFrame PipelineRenderer::begin(const FrameInputs& frame, const std::vector
     if (options_.audits)
         for (const GraphBinding& binding : built_->bindings)
             if (const auto* input = std::get_if<CaptureBinding>(&binding))
-                audit_input(input->role, once.at(input->offset)->images.at(input->role), result.audit);
+                audit_image(input->role, once.at(input->offset)->images.at(input->role), "capture",
+                            "capture." + input->role.name(), result.audit);
     issue_passes({first_pass, -1}, pending);
     begin_reads(roles, pending);
-    set_encodings(pipeline_, files_, result);
+    set_encodings(result);
     if (options_.telemetry) result.telemetry = read_telemetry(header.frame);
     steps_drawn_ = int(pipeline_.steps.size());
     mixes_drawn_ = mixes();

@@ -1,5 +1,5 @@
-// What a frame leaves on the GPU: results, taps and numbers about it. Whether a frame continues the one
-// before, and what a run hands over to the next one.
+// What a frame leaves on the GPU: results, taps and numbers about it, and what the numbers of its colours
+// mean where OpenColorIO has taken them to another space.
 #include <algorithm>
 #include <atomic>
 #include <map>
@@ -9,12 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "framework/base/error.h"
+#include "framework/effect/color_param.h"
 #include "framework/gpu/timer.h"
 #include "framework/image/non_finite.h"
 #include "framework/image/role.h"
 #include "framework/render/built_graph.h"
-#include "framework/render/history_file.h"
 #include "framework/render/renderer.h"
 
 namespace aftershade {
@@ -129,65 +128,55 @@ const gpu::Texture* PipelineRenderer::result_texture(const std::string& role) co
     return handle == built_->results.end() ? nullptr : built_->executor->texture(handle->second);
 }
 
-std::string PipelineRenderer::history_fault(const FrameInputs& frame) const {
-    const CaptureHeader& header = frame.capture->header;
-    if (!last_) return "the first frame";
-    if (frame.begins_shot) return "a cut";
-    if (is_partial_) return "frame " + std::to_string(last_->frame) + " lacks sub-frames";
-    if (!(last_->window == header.data_window)) return "another data window";
-    if (last_->pixel_aspect != header.pixel_aspect) return "another pixel aspect";
-    if (header.frame != last_->frame + 1)
-        return "it follows frame " + std::to_string(last_->frame) + ", not " +
-               std::to_string(header.frame - 1);
-    return "";
+namespace {
+
+bool outputs(const PipelineStep& step, const std::string& role) {
+    return std::ranges::find(step.manifest->outputs, role, &OutputSpec::role) != step.manifest->outputs.end();
 }
 
-void PipelineRenderer::save_history(const std::filesystem::path& path, const std::string& fingerprint) {
-    SavedHistory saved;
-    saved.fingerprint = fingerprint;
-    saved.look = history_identity(pipeline_);
-    if (last_) {
-        saved.frame = last_->frame;
-        saved.window = last_->window;
-        saved.camera = last_->camera;
+bool takes(const PipelineStep& step, const std::string& role) {
+    return std::ranges::find(step.manifest->inputs, role, &InputSpec::role) != step.manifest->inputs.end();
+}
+
+const ParamSpec* config_of(const PipelineStep& step) {
+    const auto& params = step.manifest->params;
+    const auto config = std::ranges::find(params, FileKind::ocio_config, &ParamSpec::file_kind);
+    return config == params.end() ? nullptr : &*config;
+}
+
+/// Unknown where the step's file is not loaded.
+ColorEncoding made_by(const StepFiles& files, int index, const ParamSpec& config) {
+    const auto* transform = std::get_if<ColorTransform>(files.loaded(index, config.name));
+    return transform ? transform->encoding : ColorTransform{}.encoding;
+}
+
+/// Whether the step's conversion is to a space, not back to the capture's primaries.
+bool has_destination(const PipelineStep& step) {
+    return std::ranges::any_of(step.manifest->params, [&](const ParamSpec& spec) {
+        return spec.ocio == "destination" &&
+               std::ranges::any_of(step.known_values(spec), [](const ParamValue& value) {
+                   return !std::get<std::string>(value).empty();
+               });
+    });
+}
+
+}  // namespace
+
+void PipelineRenderer::set_encodings(FrameResult& result) const {
+    for (int index = int(pipeline_.steps.size()) - 1; index >= 0; --index) {
+        const PipelineStep& step = pipeline_.steps[std::size_t(index)];
+        const ParamSpec* const config = config_of(step);
+        if (!outputs(step, kDisplayRole) || (!config && takes(step, kDisplayRole))) continue;
+        if (config) result.display_encoding = made_by(files_, index, *config);
+        break;
     }
-    if (built_) saved.take_from(built_->executor->history());
-    write_history(path, saved);
-}
-
-void PipelineRenderer::load_history(const std::filesystem::path& path) {
-    saved_ = std::make_unique<SavedHistory>(read_history(path));
-    const std::string identity = history_identity(pipeline_);
-    if (saved_->look == identity) return;
-    throw Error(ErrorKind::usage, path.string() + ": this history is of another look or effect version\n" +
-                                      difference_of_identities(saved_->look, identity));
-}
-
-void PipelineRenderer::drop_loaded_history() {
-    saved_.reset();
-}
-
-void PipelineRenderer::begin_from_saved(const FrameInputs& frame) {
-    const CaptureHeader& header = frame.capture->header;
-    const std::string file = saved_->path.string();
-    if (header.frame != saved_->frame + 1)
-        throw Error(ErrorKind::usage, file + ": this history is of frame " + std::to_string(saved_->frame) +
-                                          "; it continues with frame " + std::to_string(saved_->frame + 1) +
-                                          ", not with " + std::to_string(header.frame));
-    if (!(header.data_window == saved_->window))
-        throw Error(ErrorKind::usage, file + ": this history is of another size: its window is " +
-                                          window_text(saved_->window) + ", that of frame " +
-                                          std::to_string(header.frame) + " is " +
-                                          window_text(header.data_window));
-    last_ = {saved_->frame, saved_->window, saved_->camera, header.pixel_aspect};
-    camera_before_ = saved_->camera;
-}
-
-void PipelineRenderer::restore(const SavedHistory& saved) {
-    const std::string missing = saved.give_to(built_->executor->history());
-    if (!missing.empty())
-        throw Error(ErrorKind::usage, saved.path.string() + ": this history has no '" + missing +
-                                          "' of the size that this frame needs");
+    for (int index = int(pipeline_.steps.size()) - 1; index >= 0; --index) {
+        const PipelineStep& step = pipeline_.steps[std::size_t(index)];
+        const ParamSpec* const config = config_of(step);
+        if (!config || !outputs(step, kColorRole)) continue;
+        if (has_destination(step)) result.color_encoding = made_by(files_, index, *config);
+        break;
+    }
 }
 
 }  // namespace aftershade

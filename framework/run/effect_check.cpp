@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -58,11 +57,8 @@ Pipeline pipeline_of(const EffectManifest& manifest, const Setting& setting) {
 
 std::string first_bad_value(const FrameResult& result) {
     for (const auto& [role, image] : result.images) {
-        if (image.type() != ComponentType::float32) continue;
         std::vector<AuditFinding> findings;
-        audit_values({image.floats(), image.width(), image.channels(), std::isinf(find_role(role)->outside),
-                      "the step", role},
-                     findings);
+        audit_image(RoleId(role), image, "the step", role, findings);
         if (!findings.empty()) return describe_finding(findings.front());
     }
     return "";

@@ -44,7 +44,8 @@ public:
         material.roughness = share("roughnessFactor", pbr.roughnessFactor);
         material.emission = color("emissiveFactor", source.emissiveFactor, 3);
         MaterialMaps& maps = material.maps;
-        maps.base_color = map("baseColorTexture", pbr.baseColorTexture, TexelValues::srgb);
+        const bool by_alpha = source.alphaMode == "BLEND" || source.alphaMode == "MASK";
+        maps.base_color = map("baseColorTexture", pbr.baseColorTexture, TexelValues::srgb, by_alpha);
         maps.metallic_roughness =
             map("metallicRoughnessTexture", pbr.metallicRoughnessTexture, TexelValues::linear);
         maps.emission = map("emissiveTexture", source.emissiveTexture, TexelValues::srgb);
@@ -96,7 +97,8 @@ private:
     }
 
     template <class Info>
-    MaterialMaps::Map map(const std::string& key, const Info& info, TexelValues values) {
+    MaterialMaps::Map map(const std::string& key, const Info& info, TexelValues values,
+                          bool by_alpha = false) {
         if (info.index == -1) return {};
         if (info.index < 0 || std::size_t(info.index) >= model_.textures.size())
             fault(fmt::format("{} is texture {}, the file has {}", key, info.index, model_.textures.size()));
@@ -111,7 +113,9 @@ private:
             channel = transformed(key, channel, found->second);
         if (channel.set < 0)
             fault(fmt::format("{} has texture coordinates set {}, not 0 or more", key, channel.set));
-        return {decoded(texture.source, values, sampling_of(place, texture.sampler)), number_of(channel)};
+        TextureSampling sampling = sampling_of(place, texture.sampler);
+        sampling.by_alpha = by_alpha;
+        return {decoded(texture.source, values, sampling), number_of(channel)};
     }
 
     int number_of(const UvChannel& channel) {
@@ -165,7 +169,8 @@ private:
 
     std::shared_ptr<const SurfaceTexture> decoded(int image, TexelValues values,
                                                   const TextureSampling& sampling) {
-        auto& made = made_[{image, values, sampling.wrap_u, sampling.wrap_v, sampling.nearest}];
+        auto& made =
+            made_[{image, values, sampling.wrap_u, sampling.wrap_v, sampling.nearest, sampling.by_alpha}];
         if (!made) {
             const Image& stored = stored_image(image);
             texels_ += std::size_t(stored.width()) * std::size_t(stored.height());
@@ -218,7 +223,7 @@ private:
         return text(bytes, view.byteOffset, view.byteLength);
     }
 
-    using Key = std::tuple<int, TexelValues, TextureWrap, TextureWrap, bool>;
+    using Key = std::tuple<int, TexelValues, TextureWrap, TextureWrap, bool, bool>;
 
     const fs::path& path_;
     const tinygltf::Model& model_;

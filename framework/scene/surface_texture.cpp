@@ -44,6 +44,10 @@ std::uint32_t encoded(TexelValues values, double value) {
     return byte_of(values == TexelValues::linear ? value : 0.5 + 0.5 * value);
 }
 
+/// What a colour of alpha 0 counts, where colours count by alpha, so that a mean of none but these is one of
+/// colours. textures.glsl has the same.
+constexpr double kLeastWeight = 1e-4;
+
 /// Calls visit(texel, share) for the texels along one side that texel `at` of a coarser side covers.
 template <class Visit>
 void for_each_covered(int fine, int coarse, int at, const Visit& visit) {
@@ -52,7 +56,7 @@ void for_each_covered(int fine, int coarse, int at, const Visit& visit) {
         visit(i, (std::min(high, i + 1.0) - std::max(low, double(i))) / (high - low));
 }
 
-Values coarser(const Values& from, const ivec2& fine, const ivec2& coarse) {
+Values coarser(const Values& from, const ivec2& fine, const ivec2& coarse, bool by_alpha) {
     Values result(std::size_t(coarse.x) * std::size_t(coarse.y));
     for (int y = 0; y < coarse.y; ++y)
         for (int x = 0; x < coarse.x; ++x) {
@@ -60,9 +64,12 @@ Values coarser(const Values& from, const ivec2& fine, const ivec2& coarse) {
             for_each_covered(fine.y, coarse.y, y, [&](int from_y, double share_y) {
                 for_each_covered(fine.x, coarse.x, x, [&](int from_x, double share_x) {
                     const std::size_t index = std::size_t(from_y) * std::size_t(fine.x) + std::size_t(from_x);
-                    sum += share_x * share_y * dvec4(from[index]);
+                    dvec4 value(from[index]);
+                    if (by_alpha) value = dvec4(glm::dvec3(value) * (value.w + kLeastWeight), value.w);
+                    sum += share_x * share_y * value;
                 });
             });
+            if (by_alpha) sum = dvec4(glm::dvec3(sum) / (sum.w + kLeastWeight), sum.w);
             result[std::size_t(y) * std::size_t(coarse.x) + std::size_t(x)] = glm::vec4(sum);
         }
     return result;
@@ -120,6 +127,8 @@ SurfaceTexture::SurfaceTexture(const Image& stored, TexelValues values, const Te
             if (stored.channels() % 2 == 0) value.w = stored.at(x, y, stored.channels() - 1);
             level.push_back(value);
         }
+    sampling_.by_alpha =
+        sampling.by_alpha && std::ranges::any_of(level, [](const glm::vec4& value) { return value.w < 1; });
     for (;;) {
         levels_.push_back({size, texels_.size()});
         for (const glm::vec4& value : level)
@@ -127,7 +136,7 @@ SurfaceTexture::SurfaceTexture(const Image& stored, TexelValues values, const Te
                               encoded(values, double(value.z)) << 16 | byte_of(double(value.w)) << 24);
         if (size == ivec2(1)) return;
         const ivec2 half = glm::max(size / 2, 1);
-        level = coarser(level, size, half);
+        level = coarser(level, size, half, sampling_.by_alpha);
         size = half;
     }
 }
@@ -137,7 +146,9 @@ dvec4 SurfaceTexture::texel(const Level& level, int x, int y) const {
     const std::size_t column = std::size_t(inside(sampling_.wrap_u, x, level.size.x));
     const std::uint32_t word = texels_[level.first + row * std::size_t(level.size.x) + column];
     const auto& table = decoding(values_);
-    return {table[word & 255], table[word >> 8 & 255], table[word >> 16 & 255], (word >> 24) / 255.0};
+    const double alpha = (word >> 24) / 255.0;
+    const glm::dvec3 color(table[word & 255], table[word >> 8 & 255], table[word >> 16 & 255]);
+    return {sampling_.by_alpha ? color * (alpha + kLeastWeight) : color, alpha};
 }
 
 dvec4 SurfaceTexture::blended(std::size_t index, const dvec2& uv) const {
@@ -175,7 +186,8 @@ dvec4 SurfaceTexture::at(const dvec2& uv, const glm::dmat2& uv_of_pixel) const {
         else if (part <= 0) sum += blended(fine, place);
         else sum += glm::mix(blended(fine, place), blended(fine + 1, place), part);
     }
-    return sum / double(taps);
+    sum /= double(taps);
+    return sampling_.by_alpha ? dvec4(glm::dvec3(sum) / (sum.w + kLeastWeight), sum.w) : sum;
 }
 
 }  // namespace aftershade::scene

@@ -22,7 +22,8 @@ enum class TexelValues {
 struct TextureSampling {
     TextureWrap wrap_u = TextureWrap::repeat;
     TextureWrap wrap_v = TextureWrap::repeat;
-    bool nearest = false;  ///< one texel where a pixel is smaller than a texel; else four are blended
+    bool nearest = false;   ///< one texel where a pixel is smaller than a texel; else four are blended
+    bool by_alpha = false;  ///< colours count by their alpha in a mean, as alpha cuts out or blends them
 };
 
 /// Three channels and alpha of 8 bits, and the means of their areas at half the size, a quarter and so on.
@@ -51,9 +52,11 @@ public:
         return std::ranges::all_of(texels_, [](std::uint32_t texel) { return texel >> 24 == 255; });
     }
     TexelValues values() const { return values_; }
+    /// `by_alpha` only where alpha is not 1 everywhere, since it changes nothing there.
     const TextureSampling& sampling() const { return sampling_; }
 
 private:
+    /// Colour times its weight, where it counts by alpha.
     glm::dvec4 texel(const Level& level, int x, int y) const;
     glm::dvec4 blended(std::size_t level, const glm::dvec2& uv) const;
     glm::dvec4 nearest(const glm::dvec2& uv) const;

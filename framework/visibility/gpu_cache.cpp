@@ -33,7 +33,8 @@ struct CacheSettings {
     std::uint32_t tile_px = 0;
     std::uint32_t slots = 0;
     std::uint32_t shading_count = 0;
-    std::array<std::uint32_t, 2> unused{};
+    std::uint32_t order_px = 1;
+    std::uint32_t unused = 0;
 };
 
 struct FillSettings {
@@ -212,12 +213,13 @@ FilledCache fill_tables(Passes& passes, const scene::SampleIds& samples, std::ui
     return fill_in_bands(passes, samples, std::move(cache), bands);
 }
 
-FilledCache fill_buckets(Passes& passes, const scene::SampleIds& samples, int entries,
+FilledCache fill_buckets(Passes& passes, const scene::SampleIds& samples, int entries, int tile_px,
                          std::size_t max_buffer_bytes) {
     Cache cache{"bucket_requests", visibility_bucket_shader(), {}, {}};
     const std::uint32_t buckets =
         std::bit_ceil(std::uint32_t(entries + kPlacesOfBucket - 1) / kPlacesOfBucket);
     cache.settings.slots = buckets;
+    cache.settings.order_px = std::uint32_t(tile_px);
     cache.tables = {{"keys", 1, buckets * kPlacesOfBucket, kNoShading},
                     {"buckets", 3, buckets * 2, 0},
                     {"addresses", 5, buckets * kPlacesOfBucket, kNoShading}};

@@ -44,7 +44,8 @@ public:
             words_.push_back(std::uint32_t(finest.size.y));
             words_.push_back(std::uint32_t(texture.levels().size()));
             words_.push_back(std::uint32_t(sampling.wrap_u) | std::uint32_t(sampling.wrap_v) << 2 |
-                             std::uint32_t(texture.values()) << 4 | (sampling.nearest ? 64u : 0u));
+                             std::uint32_t(texture.values()) << 4 | (sampling.nearest ? 64u : 0u) |
+                             (sampling.by_alpha ? 128u : 0u));
             words_.insert(words_.end(), texture.texels().begin(), texture.texels().end());
         }
         return entry->second << 3 | std::uint32_t(map.channel);

@@ -12,6 +12,7 @@ layout(std140, binding = 0) uniform Settings {
     uint tile_px;       // 0: one table for the picture
     uint slots;         // of a table, or buckets; a power of two
     uint shading_count; // of earlier bands, in buckets
+    uint order_px;      // sides of squares whose pixels come one after the other; 1: rows
 };
 layout(std430, binding = 4) writeonly buffer Places { uint places[]; };  // of each sample's light; kNoShading: it has none in the cache
 

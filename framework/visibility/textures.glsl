@@ -4,13 +4,16 @@ const uint kNoMap = 0xffffffffu;
 const uint kRepeat = 0u, kMirror = 1u;    // 2: clamp
 const uint kSrgb = 1u, kNormal = 2u;      // 0: linear
 const float kMostTaps = 8.0;
+const float kLeastWeight = 1e-4;  // of a colour of alpha 0, where colours count by alpha
 
 struct Map {
     uint first;  // texel of the finest level
     ivec2 size;
     int levels;
-    uint kinds;  // how u repeats, v by 4; what texels stand for by 16; 64: nearest
+    uint kinds;  // how u repeats, v by 4; what texels stand for by 16; 64: nearest; 128: colours count by alpha
 };
+
+bool counts_by_alpha(Map map) { return kHasAlpha && (map.kinds & 128u) != 0u; }
 
 vec4 texel_value(uint word, uint values) {
     vec4 texel = unpackUnorm4x8(word);
@@ -43,7 +46,8 @@ int inside(uint wrap, int at, int side) {
 
 vec4 texel(Map map, uint first, ivec2 size, ivec2 at) {
     int row = inside((map.kinds >> 2) & 3u, at.y, size.y), column = inside(map.kinds & 3u, at.x, size.x);
-    return texel_value(looks[first + uint(row * size.x + column)], (map.kinds >> 4) & 3u);
+    vec4 value = texel_value(looks[first + uint(row * size.x + column)], (map.kinds >> 4) & 3u);
+    return counts_by_alpha(map) ? vec4(value.rgb * (value.a + kLeastWeight), value.a) : value;
 }
 
 vec4 blended(Map map, int level, vec2 uv) {
@@ -87,7 +91,8 @@ vec4 texture_at(uint index, vec2 uv, mat2 uv_of_pixel) {
         vec4 value = blended(map, fine, place);
         sum += part > 0.0 ? mix(value, blended(map, fine + 1, place), part) : value;
     }
-    return sum / float(taps);
+    sum /= float(taps);
+    return counts_by_alpha(map) ? vec4(sum.rgb / (sum.a + kLeastWeight), sum.a) : sum;
 }
 
 // A point of a triangle of an object: the twin of scene::TexturePoint.

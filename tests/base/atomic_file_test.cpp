@@ -265,6 +265,25 @@ TEST(AtomicFiles, ReplaceWhatALinkLeadsToAndKeepTheLink) {
     EXPECT_EQ(read_text(folder / "store/later"), "made");
 }
 
+TEST(AtomicFiles, TakeTheBytesOfAnotherFileAndNameTheirOwnPathWhereThatFails) {
+    const TemporaryFolder folder;
+    write_text(folder / "from", std::string("a\0b\r\n", 5));
+    write_text(folder / "to", "old and longer");
+    AtomicFile copy(folder / "to");
+    copy.copy_from(folder / "from");
+    EXPECT_EQ(read_text(folder / "to"), "old and longer");
+    copy.commit();
+    EXPECT_EQ(read_text(folder / "to"), read_text(folder / "from"));
+    try {
+        AtomicFile(folder / "to").copy_from(folder / "absent");
+        FAIL() << "the file is absent";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::output);
+        EXPECT_EQ(std::string(error.what()), (folder / "to").string() + ": No such file or directory");
+    }
+    EXPECT_EQ(folder.file_count(), 2u) << "no temporary file stays";
+}
+
 /// What writing text there fails with; "" where it does not.
 std::string write_fault(const fs::path& path) {
     try {

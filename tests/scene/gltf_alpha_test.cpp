@@ -1,5 +1,7 @@
 // Alpha, further sets of texture coordinates and KHR_texture_transform of glTF, against closed forms.
 #include <cmath>
+#include <ctime>
+#include <functional>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -89,6 +91,73 @@ TEST(GltfAlpha, OfOpaqueAndOfFactorsAloneNeedNoTexture) {
     EXPECT_NEAR(of(R"("alphaMode": "MASK", "alphaCutoff": 0.3)"), 0.4 * 0.5, 1e-6);
     EXPECT_NEAR(of(R"("alphaMode": "MASK", "alphaCutoff": 0.31)"), 0.25, 1e-6);
     EXPECT_NEAR(of(R"("alphaMode": "MASK", "alphaCutoff": 0)"), 0.4 * 0.5, 1e-6);
+}
+
+/// What a texel of any colour and alpha is of, by a hash.
+glm::ivec4 speckled(int x, int y) {
+    const unsigned hash = unsigned(x * 7919 + y * 104729) * 2654435761u;
+    return {hash >> 24, hash >> 16 & 255, hash >> 8 & 255, hash >> 5 & 255};
+}
+
+Capture speckled_capture(int texels, const std::string& mode, const std::function<glm::ivec4(int, int)>& of) {
+    const std::string material =
+        R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0})" + mode;
+    return capture_of(textured_quad(material, {.pictures = {rgba_png(texels, texels, of)}}).text(), kSide,
+                      kAround);
+}
+
+TEST(GltfAlpha, OfBlendWeighsTheColoursOfAPixelsTexels) {
+    constexpr int kBlock = 8;
+    const Capture capture = speckled_capture(kSide * kBlock, R"(, "alphaMode": "BLEND")", speckled);
+    for (int i = 0; i < kSide * kSide; ++i) {
+        glm::dvec3 light(0);
+        for (int k = 0; k < kBlock * kBlock; ++k) {
+            const glm::ivec4 texel =
+                speckled(i % kSide * kBlock + k % kBlock, i / kSide * kBlock + k / kBlock);
+            const double alpha = texel.w / 255.0;
+            for (int c = 0; c < 3; ++c)
+                light[c] += alpha * decode_srgb(texel[c] / 255.0) * 0.5 + (1 - alpha) * 0.25;
+        }
+        expect_near(pixel_of(capture, "color", i % kSide, i / kSide), light / double(kBlock * kBlock), 0.003);
+    }
+}
+
+/// Red leaves with green behind their outlines: near, where four texels are blended, and far away.
+TEST(GltfAlpha, OfBlendAndMaskHideTheColoursOfTexelsWithoutAlpha) {
+    const auto leaf = [](int x, int y) {
+        return (x + y) % 2 == 0 ? glm::ivec4(255, 0, 0, 255) : glm::ivec4(0, 255, 0, 0);
+    };
+    for (const char* mode : {R"(, "alphaMode": "BLEND")", R"(, "alphaMode": "MASK", "alphaCutoff": 0.4)"})
+        for (const int texels : {2, 4, 64}) {
+            const Capture capture = speckled_capture(texels, mode, leaf);
+            for (int i = 0; i < kSide * kSide; ++i)
+                EXPECT_LT(pixel_of(capture, "albedo", i % kSide, i / kSide).y, 0.001) << mode << texels;
+        }
+    const Capture opaque = speckled_capture(64, "", leaf);
+    EXPECT_NEAR(pixel_of(opaque, "albedo", 3, 3).y, 0.5, 0.003) << "alpha is ignored there";
+}
+
+/// A mesh is asked for its materials once, not for each object that it is.
+TEST(GltfAlpha, OfCopiesIsThatOfTheirMeshUnlessTheyHaveAMaterial) {
+    const auto geometry_s = [](std::size_t copies) {
+        Scene scene;
+        scene.materials.resize(3);
+        scene.materials[1].blends = true;
+        Mesh& mesh = scene.meshes.emplace_back();
+        mesh.vertices.resize(3);
+        mesh.triangles.resize(20'000, {0, 1, 2});
+        mesh.materials.resize(mesh.triangles.size(), 1);
+        scene.objects.resize(copies);
+        for (Object& object : scene.objects) object.shape = {ShapeKind::mesh, {}, 0};
+        for (std::size_t i = 0; i < copies; ++i) scene.objects[i].has_mesh_materials = i % 3 != 2;
+        const std::clock_t start = std::clock();
+        const Geometry geometry(scene);
+        const double time_s = double(std::clock() - start) / CLOCKS_PER_SEC;
+        for (std::size_t i = 0; i < copies; ++i)
+            EXPECT_EQ(geometry.alpha_of(i).is_mixed, scene.objects[i].has_mesh_materials) << i;
+        return time_s;
+    };
+    EXPECT_LT(geometry_s(10'000), 4 * geometry_s(1) + 0.05);
 }
 
 /// The quad of alpha 0 in its left half and `right` in the other, between the sun and a floor that the camera

@@ -102,9 +102,13 @@ TEST(GltfTextureFaults, OfTransformsAndAlphaNameTheirPlace) {
 TEST(GltfTextureFaults, OfASetThatAPrimitiveLacksAreWarnings) {
     const TemporaryFolder folder;
     const std::string material = R"("emissiveTexture": {"index": 0, "texCoord": 3})";
-    write_text(folder / "model.gltf", textured_quad(material, {.pictures = {png_of({1, 2, 3})}}).text());
+    File file = textured_quad(material, {.pictures = {png_of({1, 2, 3})}});
+    file.nodes = R"({"mesh": 0}, {"mesh": 0, "translation": [2, 0, 0]})";
+    file.scenes = R"("scene": 0, "scenes": [{"nodes": [0, 1]}])";
+    write_text(folder / "model.gltf", file.text());
     const GltfModel model = read_gltf_model(folder / "model.gltf");
-    ASSERT_EQ(model.warnings.size(), 1u);
+    EXPECT_EQ(model.mesh.triangles.size(), 4u);
+    ASSERT_EQ(model.warnings.size(), 1u) << "one for all nodes of the mesh";
     EXPECT_NE(
         model.warnings[0].find("mesh 0 primitive 0 has no TEXCOORD_3, which a texture of its material needs"),
         std::string::npos)

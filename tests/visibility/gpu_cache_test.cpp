@@ -69,7 +69,8 @@ TEST_P(CacheOn, GivesSamplesTheAddressesOfTheirLight) {
         expect_own_light(tiles, ids);
         EXPECT_EQ(tiles.replay.shadings, scene::replay(samples, {scene::ShadingCache::tile, 8}).shadings);
         for (const int entries : {1, 64, 4096})
-            expect_own_light(fill_buckets(passes, samples, entries, bytes), ids);
+            for (const int tile_px : {1, 16, 25})
+                expect_own_light(fill_buckets(passes, samples, entries, tile_px, bytes), ids);
     }
 }
 

@@ -102,6 +102,21 @@ TEST_P(LightOn, ShinesThroughAlphaAndByFurtherTextureCoordinatesAsTheCpus) {
     }
 }
 
+TEST_P(LightOn, WeighsTheColoursOfAlphaAsTheCpuDoes) {
+    using namespace scene::test;
+    const std::string png = rgba_png(64, 64, [](int x, int y) {
+        return (x + y) % 2 == 0 ? glm::ivec4(200, 60, 30, 255) : glm::ivec4(0, 255, 0, 4 * x);
+    });
+    for (const std::string& mode : {kBlend, kMask})
+        for (const int side_px : {11, 100}) {
+            const TemporaryFolder folder;
+            write_text(folder / "model.gltf", textured_quad(kPainted + mode, {.pictures = {png}}).text());
+            const scene::Scene quad = quad_scene(folder.path(), side_px, R"("ambient": 0.5,)");
+            const Pictures both = pictures(context(), quad, 1, 1, kMaxBufferBytes, {side_px, side_px});
+            EXPECT_LT(other_pixels(both), 0.01) << mode << side_px;
+        }
+}
+
 TEST_P(LightOn, RefusesTexturesThatNoBufferHolds) {
     try {
         pictures(context(), scene::shipped_scene("urn"), 4, 1, 4096);
