@@ -15,7 +15,7 @@ bool is_across(ivec2 p, float coc_px) { return abs(coc_inside(p) - coc_px) > kOn
 
 // Whether a pixel near p, of its surface and off the silhouette, has p's colour, which then is the surface's own. Upscaled
 // captures repeat a mixed pixel up to kTexturePx - 1 times.
-const float kSameColor = 0.01;  // squared difference, of the squared one of both surfaces
+const float kSameColor = 0.003;  // squared difference, of the squared one of both surfaces
 const int kTexturePx = 3;
 bool is_texture(ivec2 p, vec3 own, float coc_px, ivec2 to, float length_2) {
     ivec2 side = ivec2(-to.y, to.x);
