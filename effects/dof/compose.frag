@@ -37,8 +37,12 @@ void main() {
     if (is_reached_far && !is_all) over = both(over, coarse.over);
 #ifdef HAS_KEPT
     vec4 near = texelFetch(kept, p, 0);
-    float uncovered = 1.0 - max(near.a - over.opacity, 0.0) / max(1.0 - over.opacity, 1e-3);
-    surface.color.rgb = uncovered * surface.color.rgb + (1.0 - uncovered) / max(near.a, 1e-3) * near.rgb;
+    float covered = max(near.a - over.opacity, 0.0) / max(1.0 - over.opacity, 1e-3), uncovered = 1.0 - covered;
+    // Of the pixel's own alpha, what is not that of the surface behind.
+    float near_alpha = max(texelFetch(color, p, 0).a - (1.0 - near.a) * surface.color.a, 0.0);
+    surface.color = uncovered * surface.color + covered / max(near.a, 1e-3) * vec4(near.rgb, near_alpha);
+#else
+    const float uncovered = 1.0;
 #endif
     out_color = over.color + surface.color * (1.0 - over.opacity);
 #ifdef SILHOUETTES
@@ -46,5 +50,5 @@ void main() {
 #else
     const bool is_hidden = false;
 #endif
-    out_veil = is_hidden ? 1.0 - over.hides : (1.0 - over.opacity) * vec2(1.0, 1.0 - surface.share);
+    out_veil = is_hidden ? 1.0 - over.hides : (1.0 - over.opacity) * uncovered * vec2(1.0, 1.0 - surface.share);
 }

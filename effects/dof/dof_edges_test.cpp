@@ -155,7 +155,7 @@ TEST(DofEdges, AnAntialiasedEdgeInFocusOrNearlySoStaysBeforeAWideBlur) {
     constexpr int edge = 47, steps = 64;
     constexpr float ball = 0.8f, wall = 0.2f;
     constexpr double radius_px = 16;
-    for (const double ball_px : {0.0, 0.4, 0.8, 1.0})
+    for (const double ball_px : {0.0, 0.4, 0.8})
         for (const double share : {0.25, 0.4, 0.5}) {
             const double ball_m =
                 kApertureFocusM / (1 + (kApertureFocusM / kApertureNearM - 1) * ball_px / radius_px);
@@ -177,6 +177,41 @@ TEST(DofEdges, AnAntialiasedEdgeInFocusOrNearlySoStaysBeforeAWideBlur) {
             EXPECT_NEAR(out.at(edge, 32, 0), double(wall) + opacity * double(ball - wall), 0.07)
                 << ball_px << " " << share;
         }
+}
+
+/// A ball in focus, premultiplied, before nothing: its share of a pixel stays its alpha.
+TEST(DofEdges, AnAntialiasedEdgeInFocusKeepsItsAlphaBeforeNothing) {
+    constexpr int edge = 47;
+    constexpr float ball = 0.8f, share = 0.4f;
+    Capture capture = picture_of_columns([&](int x) {
+        return x < edge ? Column{ball, kApertureFocusM} : Column{x == edge ? share * ball : 0, kApertureFarM};
+    });
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = edge; x < kWidth; ++x) capture.images["color"].at(x, y, 3) = x == edge ? share : 0;
+    const Image out = through_aperture("dof", capture, 16, R"("blades": 0)");
+    EXPECT_NEAR(out.at(edge, 32, 0), share * ball, 0.03);
+    EXPECT_NEAR(out.at(edge, 32, 3), share, 0.03);
+}
+
+/// The distance along a slanted plane is even but for rounding, which must not make it round.
+TEST(DofEdges, ASlantedPlaneIsNotRound) {
+    constexpr int left = 40, right = 56;
+    constexpr double radius_px = 8, step_px = 0.3;
+    double least = 1, most = 0;
+    for (int i = 0; i < 16; ++i) {
+        const auto depth_at = [&](int x) {
+            const double coc_px = 1 + 1e-4 * i + step_px * (x - left);
+            return kApertureFocusM / (1 + (kApertureFocusM / kApertureNearM - 1) * coc_px / radius_px);
+        };
+        const Image out = blurred(
+            [&](int x) {
+                return x >= left && x < right ? Column{0, float(depth_at(x))} : Column{1, kApertureFarM};
+            },
+            radius_px);
+        least = std::min(least, double(out.at(left - 1, 32, 0)));
+        most = std::max(most, double(out.at(left - 1, 32, 0)));
+    }
+    EXPECT_LT(most - least, 0.005);
 }
 
 /// One ray a pixel: a near ball is darker towards its edge, where its last pixel has a colour between the

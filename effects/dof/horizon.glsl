@@ -6,6 +6,8 @@ float coc_inside(ivec2 p) { return texelFetch(lit_coc, clamp(p, ivec2(0), frame.
 
 const float kNarrowPx = 3.0;  // a wider blur hides where its surface ends
 const float kRound = 0.05;    // error of the fourth pixel's CoC, of the step between the first two
+// Of the steps between three pixels: at most 0.77 beside the end of a round surface, and 1 on a plane but for rounding.
+const float kStraight = 0.85;
 
 // Along a circle's or a sphere's outline (c - end)^2 is linear in the distance from the outline: three pixels give `end`, and a fourth
 // tells a round surface from others.
@@ -20,7 +22,7 @@ float horizon_coc(ivec2 p, float coc_px) {
         ivec2 to = ivec2(i % 3, i / 3) - 1;
         float second = coc_inside(p - to), third = coc_inside(p - 2 * to);
         float step_px = coc_px - second, next_px = second - third;
-        if (next_px <= 0.0 || step_px <= next_px || step_px > kOneSurfacePx) continue;
+        if (next_px <= 0.0 || next_px > kStraight * step_px || step_px > kOneSurfacePx) continue;
         float end = (2.0 * second * second - coc_px * coc_px - third * third) / (2.0 * (next_px - step_px));
         float off = (second - end) * (second - end), slope = off - (coc_px - end) * (coc_px - end);
         float fourth = end - sqrt(max(off + 2.0 * slope, 0.0));

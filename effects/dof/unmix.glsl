@@ -113,7 +113,10 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
         way = to;
     }
     if (way == ivec2(0) || is_texture(p, own, coc_px, way, best.length_2)) return Unmixed(own, kind, vec4(0.0));
-    // What is nearer and in focus, or nearly so, keeps its antialiasing before the blur.
-    float seen = best_coc < coc_px ? clamp(kLeastBlurredPx - abs(best_coc), 0.0, 1.0) : 0.0;
-    return Unmixed(best.rest, best_coc < coc_px ? kMixture : kNearMixture, seen * vec4(max(own - (1.0 - best.share) * best.rest, vec3(0.0)), best.share));
+    // What is nearer and in focus keeps its antialiasing before the blur. In a blur as narrow as a mixture, both stay as they are.
+    bool is_far = best_coc < coc_px;
+    float near_px = is_far ? abs(best_coc) : kLeastBlurredPx;
+    float seen = near_px < kLeastBlurredPx ? clamp(2.5 * (1.2 - near_px), 0.0, 1.0) : 0.0;
+    vec4 near = seen * vec4(max(own - (1.0 - best.share) * best.rest, vec3(0.0)), best.share);
+    return Unmixed(near_px < kLeastBlurredPx ? mix(own, best.rest, seen) : best.rest, is_far ? kMixture : kNearMixture, near);
 }
