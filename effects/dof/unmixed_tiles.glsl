@@ -3,7 +3,7 @@
 // Antialiasing mixes a third of the pixels at silhouettes, on both sides alike. With one ray a pixel, texture looks like a mixture at a
 // few of them, and the shading of a round surface at many, but on the near side alone.
 const float kLeastMixed = 0.08;  // on the far side
-const int kAround = 3;  // tiles
+const int kAround = 2;  // tiles
 
 bool unmixed_tiles(ivec2 tile) {
     if (!mixed_tiles(tile)) return false;
