@@ -137,7 +137,7 @@ def antialiased(family: list[Effect]) -> dict[tuple[float, float], dict[str, flo
     """The shipped starter capture, whose colour is antialiased and whose depth is one sample, against the lens of its own tracer."""
     capture, found = ROOT / "scenes/starter/gbuffer_0001.exr", {}
     for focus_m, f_number in STARTER_LENSES:
-        truth = through_lens(1, focus_m, 0.05 / f_number / 2, 512)
+        truth = through_lens(1, focus_m, 0.05 / f_number / 2, 1024)
         params = {"focus_distance": focus_m, "f_number": f_number, "focal_length": 50, "sensor_width": 36}
         shown = {"sharp": read_exr(capture)}
         for effect in family:
