@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/file.h>
+#include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -242,12 +243,16 @@ void prepare_output_folder(const fs::path& file) {
 }
 
 void AtomicFile::copy_from(const fs::path& file) {
-    std::error_code failure;
-    errno = 0;  // libstdc++ calls a full disk an input/output error
-    fs::copy_file(file, temporary_path_, fs::copy_options::overwrite_existing, failure);
-    if (failure)
-        throw Error(ErrorKind::output,
-                    final_path_.string() + ": " + (errno ? std::strerror(errno) : failure.message()));
+    const auto fail = [&](const std::string& step) {
+        throw Error(ErrorKind::output, final_path_.string() + ": " + step + ": " + std::strerror(errno));
+    };
+    // fs::copy_file() would also give the copy the permissions of `file`.
+    const Descriptor from(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    if (from.get() < 0) fail("'" + file.string() + "' cannot be read");
+    const Descriptor to(open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    ssize_t count = to.get() < 0 ? -1 : 1;
+    while (count > 0) count = sendfile(to.get(), from.get(), nullptr, std::size_t(1) << 30);
+    if (count < 0) fail("cannot be written");
 }
 
 void AtomicFile::commit(Flush flush) {

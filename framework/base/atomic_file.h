@@ -28,8 +28,8 @@ public:
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
-    /// Gives it the bytes of another file. Throws Error(ErrorKind::output) naming the final path and the
-    /// system's reason.
+    /// Gives it the bytes of another file, not its permissions. Throws Error(ErrorKind::output) naming the
+    /// final path, the other file where that cannot be read, and the system's reason.
     void copy_from(const std::filesystem::path& file);
     /// `no`: after a crash of the system the file may lack its contents.
     enum class Flush { no, yes };

@@ -21,8 +21,8 @@ struct AuditFinding {
     int y = 0;
 };
 
-/// Looks at every value of a role's image of floats; adds a finding if there is one to report. Infinity is
-/// one unless the role has it outside: a depth of +inf is nothing hit.
+/// Adds a finding if a role's image of floats has NaN, or has infinity although the role's value outside an
+/// image is finite. Depth may be +inf, where nothing is hit.
 void audit_image(const RoleId& role, const Image& image, const std::string& pass, const std::string& texture,
                  std::vector<AuditFinding>& findings);
 

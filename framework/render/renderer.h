@@ -168,8 +168,8 @@ private:
     void issue_passes(graph::PassRange range, PendingFrame& pending);
     FrameTelemetry read_telemetry(int frame) const;
     void begin_reads(const std::vector<std::string>& roles, PendingFrame& pending);
-    /// Of `display` and `color`, by the last steps that made them of other images, with the transforms that
-    /// the steps' files are of now.
+    /// Sets the encodings of `display` and `color` by the last steps that made them of other images, with the
+    /// transforms that the steps' files hold now.
     void set_encodings(FrameResult& result) const;
     void begin_from_saved(const FrameInputs& frame);
     void restore(const SavedHistory& saved);

@@ -44,7 +44,8 @@ public:
         material.roughness = share("roughnessFactor", pbr.roughnessFactor);
         material.emission = color("emissiveFactor", source.emissiveFactor, 3);
         MaterialMaps& maps = material.maps;
-        const bool by_alpha = source.alphaMode == "BLEND" || source.alphaMode == "MASK";
+        const bool by_alpha =
+            source.alphaMode == "BLEND" || (source.alphaMode == "MASK" && source.alphaCutoff > 0);
         maps.base_color = map("baseColorTexture", pbr.baseColorTexture, TexelValues::srgb, by_alpha);
         maps.metallic_roughness =
             map("metallicRoughnessTexture", pbr.metallicRoughnessTexture, TexelValues::linear);
@@ -169,8 +170,13 @@ private:
 
     std::shared_ptr<const SurfaceTexture> decoded(int image, TexelValues values,
                                                   const TextureSampling& sampling) {
-        auto& made =
-            made_[{image, values, sampling.wrap_u, sampling.wrap_v, sampling.nearest, sampling.by_alpha}];
+        const auto made_of = [&](bool by_alpha) -> std::shared_ptr<const SurfaceTexture>& {
+            return made_[{image, values, sampling.wrap_u, sampling.wrap_v, sampling.nearest, by_alpha}];
+        };
+        auto& made = made_of(sampling.by_alpha);
+        // Where alpha is 1, all colours count alike.
+        if (const auto& other = made_of(!sampling.by_alpha); !made && other && other->is_opaque())
+            made = other;
         if (!made) {
             const Image& stored = stored_image(image);
             texels_ += std::size_t(stored.width()) * std::size_t(stored.height());

@@ -44,8 +44,8 @@ std::uint32_t encoded(TexelValues values, double value) {
     return byte_of(values == TexelValues::linear ? value : 0.5 + 0.5 * value);
 }
 
-/// What a colour of alpha 0 counts, where colours count by alpha, so that a mean of none but these is one of
-/// colours. textures.glsl has the same.
+/// Weight of alpha 0 where colours count by alpha. It keeps the colour of a mean of texels that all have
+/// alpha 0. textures.glsl has the same.
 constexpr double kLeastWeight = 1e-4;
 
 /// Calls visit(texel, share) for the texels along one side that texel `at` of a coarser side covers.

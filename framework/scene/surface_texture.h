@@ -52,7 +52,7 @@ public:
         return std::ranges::all_of(texels_, [](std::uint32_t texel) { return texel >> 24 == 255; });
     }
     TexelValues values() const { return values_; }
-    /// `by_alpha` only where alpha is not 1 everywhere, since it changes nothing there.
+    /// `by_alpha` is false where alpha is 1 everywhere, since it would change nothing.
     const TextureSampling& sampling() const { return sampling_; }
 
 private:

@@ -28,9 +28,9 @@ struct FilledCache {
 FilledCache fill_tables(Passes& passes, const scene::SampleIds& samples, std::uint32_t id_count, int tile_px,
                         std::size_t max_buffer_bytes = kMaxBufferBytes);
 
-/// A cache of at least `entries` ids in buckets of four, first in, first out. Pixels ask in the order of
-/// tiles of `tile_px`, as scene::replay() has them. Which requests are hits depends on the order in which
-/// invocations run.
+/// A cache of at least `entries` ids in buckets of four, first in, first out. The pixels of a band ask tile
+/// by tile, as in scene::replay(); `tile_px` is 1 or more. Which requests are hits depends on the order in
+/// which invocations run.
 FilledCache fill_buckets(Passes& passes, const scene::SampleIds& samples, int entries, int tile_px,
                          std::size_t max_buffer_bytes = kMaxBufferBytes);
 

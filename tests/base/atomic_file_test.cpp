@@ -279,9 +279,14 @@ TEST(AtomicFiles, TakeTheBytesOfAnotherFileAndNameTheirOwnPathWhereThatFails) {
         FAIL() << "the file is absent";
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::output);
-        EXPECT_EQ(std::string(error.what()), (folder / "to").string() + ": No such file or directory");
+        EXPECT_EQ(std::string(error.what()), (folder / "to").string() + ": '" + (folder / "absent").string() +
+                                                 "' cannot be read: No such file or directory");
     }
     EXPECT_EQ(folder.file_count(), 2u) << "no temporary file stays";
+    fs::permissions(folder / "to", kOwnerOnly);
+    AtomicFile again(folder / "to");
+    again.copy_from(folder / "from");
+    EXPECT_EQ(mode_of(again.temporary_path()), kOwnerOnly);
 }
 
 /// What writing text there fails with; "" where it does not.

@@ -118,7 +118,5 @@ TEST_F(GoldenDraw, GivesTheSameBitsOnBothBackendsWithAnyThreadsAndVectors) {
     EXPECT_EQ(narrow["exit_code"], 0);
 }
 
-// ---- tiers and verdicts ----
-
 }  // namespace
 }  // namespace aftershade::test

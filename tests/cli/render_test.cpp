@@ -115,7 +115,7 @@ nlohmann::json visibility_on(const std::string& processor, const fs::path& folde
                   "render",
                   scene("toys"),
                   "-o",
-                  threads,
+                  processor + threads,
                   "--frames",
                   "4",
                   "--truth-only",
@@ -144,7 +144,7 @@ TEST_F(Render, TracesVisibilityWithGlAlikeOnOneThreadAndOnTwo) {
         EXPECT_EQ(counted.at("overflows"), 0);
         for (const char* pass : {"trace", "requests", "shade", "resolve"})
             EXPECT_GT(report.at("gl").at("passes_ms").at(std::string("visibility.") + pass), 0) << pass;
-        reds.push_back(channel(std::string(threads) + "/memoised_0004.exr", "R"));
+        reds.push_back(channel("gl" + std::string(threads) + "/memoised_0004.exr", "R"));
     }
     EXPECT_EQ(reds[0], reds[1]);
 }
@@ -166,7 +166,7 @@ TEST_F(Render, PacksAsHardAsItsLevelOfZipSays) {
 
 TEST_F(Render, EndsWithGlsLockedBucketsOnOneThreadAndOnTwo) {
     const Args small_cache = {"--size", "64x36", "--shading-cache", "fifo", "--cache-entries", "256"};
-    const auto cpu = visibility_on("cpu", folder_.path(), "cpu", small_cache).at("visibility").at(0);
+    const auto cpu = visibility_on("cpu", folder_.path(), "1", small_cache).at("visibility").at(0);
     for (const char* threads : {"1", "2"}) {
         const auto report = visibility_on("gl", folder_.path(), threads, small_cache);
         const auto counted = report.at("gl").at("frames").at(0), drawn = report.at("visibility").at(0);

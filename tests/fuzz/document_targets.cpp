@@ -159,7 +159,7 @@ void frame_range(std::string_view bytes) {
             broken("a pattern finds the number that it wrote");
 }
 
-constexpr Target kDocument[] = {
+constexpr Target kDocumentTargets[] = {
     {"look", "look.json", look},
     {"manifest", "effect.json", manifest},
     {"module", "module.json", module_document},
@@ -178,7 +178,7 @@ constexpr Target kDocument[] = {
 }  // namespace
 
 std::span<const Target> document_targets() {
-    return kDocument;
+    return kDocumentTargets;
 }
 
 }  // namespace aftershade::fuzz

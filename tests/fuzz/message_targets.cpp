@@ -133,7 +133,7 @@ void edit(std::string_view bytes) {
         });
 }
 
-constexpr Target kMessage[] = {
+constexpr Target kMessageTargets[] = {
     {"history", "in.history", history}, {"journal", "journal.jsonl", journal}, {"plugin", "in.bin", plugin},
     {"http", "in.http", http},          {"edit", "edits.json", edit},
 };
@@ -141,7 +141,7 @@ constexpr Target kMessage[] = {
 }  // namespace
 
 std::span<const Target> message_targets() {
-    return kMessage;
+    return kMessageTargets;
 }
 
 }  // namespace aftershade::fuzz

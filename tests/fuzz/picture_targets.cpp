@@ -107,7 +107,7 @@ void round_trip(std::string_view bytes) {
         broken("what is written is read to the bit");
 }
 
-constexpr Target kPicture[] = {
+constexpr Target kPictureTargets[] = {
     {"exr", "in.exr", exr},   {"capture_file", "in.exr", capture_file},
     {"png", "in.png", png},   {"hdr", "in.hdr", hdr},
     {"jpeg", "in.jpg", jpeg}, {"cube", "in.cube", cube},
@@ -117,7 +117,7 @@ constexpr Target kPicture[] = {
 }  // namespace
 
 std::span<const Target> picture_targets() {
-    return kPicture;
+    return kPictureTargets;
 }
 
 }  // namespace aftershade::fuzz

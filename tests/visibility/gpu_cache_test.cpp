@@ -49,7 +49,7 @@ void expect_own_light(const FilledCache& filled, const std::vector<std::uint32_t
     EXPECT_EQ(replay.requests, requests);
     EXPECT_EQ(filled.counts.requests, requests);
     EXPECT_EQ(replay.shadings, replay.ids.size());
-    EXPECT_EQ(replay.shadings, filled.counts.shadings);
+    EXPECT_GE(replay.shadings, filled.counts.shadings) << "an address that goes while it is read is one more";
     float sum = 0;
     for (const float shadings : replay.of_pixel) sum += shadings;
     EXPECT_NEAR(sum, double(replay.shadings), 1e-3 * double(replay.shadings));
@@ -63,10 +63,12 @@ TEST_P(CacheOn, GivesSamplesTheAddressesOfTheirLight) {
     for (const std::size_t bytes : {all, bands}) {
         const FilledCache global = fill_tables(passes, samples, kIds, 0, bytes);
         expect_own_light(global, ids);
+        EXPECT_EQ(global.replay.shadings, global.counts.shadings);
         EXPECT_EQ(std::set(global.replay.ids.begin(), global.replay.ids.end()).size(),
                   global.replay.ids.size());
         const FilledCache tiles = fill_tables(passes, samples, kIds, 8, bytes);
         expect_own_light(tiles, ids);
+        EXPECT_EQ(tiles.replay.shadings, tiles.counts.shadings);
         EXPECT_EQ(tiles.replay.shadings, scene::replay(samples, {scene::ShadingCache::tile, 8}).shadings);
         for (const int entries : {1, 64, 4096})
             for (const int tile_px : {1, 16, 25})

@@ -107,7 +107,8 @@ TEST_P(LightOn, WeighsTheColoursOfAlphaAsTheCpuDoes) {
     const std::string png = rgba_png(64, 64, [](int x, int y) {
         return (x + y) % 2 == 0 ? glm::ivec4(200, 60, 30, 255) : glm::ivec4(0, 255, 0, 4 * x);
     });
-    for (const std::string& mode : {kBlend, kMask})
+    const std::string all = R"(, "alphaMode": "MASK", "alphaCutoff": 0)";
+    for (const std::string& mode : {std::string(kBlend), std::string(kMask), all})
         for (const int side_px : {11, 100}) {
             const TemporaryFolder folder;
             write_text(folder / "model.gltf", textured_quad(kPainted + mode, {.pictures = {png}}).text());
