@@ -39,7 +39,7 @@ void main() {
     vec4 near = texelFetch(kept, p, 0);
     float covered = max(near.a - over.opacity, 0.0) / max(1.0 - over.opacity, 1e-3), uncovered = 1.0 - covered;
     // Of the pixel's own alpha, what is not that of the surface behind.
-    float near_alpha = max(texelFetch(color, p, 0).a - (1.0 - near.a) * surface.color.a, 0.0);
+    float near_alpha = clamp(texelFetch(color, p, 0).a - (1.0 - near.a) * surface.color.a, 0.0, near.a);
     surface.color = uncovered * surface.color + covered / max(near.a, 1e-3) * vec4(near.rgb, near_alpha);
 #else
     const float uncovered = 1.0;

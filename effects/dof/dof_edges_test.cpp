@@ -39,8 +39,8 @@ Capture picture_of_columns(const std::function<Column(int x)>& column_at) {
     return capture;
 }
 
-Image blurred(const std::function<Column(int x)>& column_at, double radius_px) {
-    return through_aperture("dof", picture_of_columns(column_at), radius_px, R"("blades": 0)");
+Image blurred(const std::function<Column(int x)>& column_at, double radius_px, const std::string& more = "") {
+    return through_aperture("dof", picture_of_columns(column_at), radius_px, R"("blades": 0)" + more);
 }
 
 /// The edge of a wall in focus lies within a texel of half size, beside a far wall and in the blur of a near
@@ -105,7 +105,8 @@ TEST(DofEdges, ANarrowBlurCoversAsMuchAsItsAperture) {
 TEST(DofEdges, ARoundSurfaceIsAsWideAsItsEndAndNotAsItsLastPixel) {
     constexpr int left = 40, right = 72;
     constexpr double radius_px = 2.5, slope = 0.6, middle = 0.5 * (left + right);
-    for (const double end : {0.6, 0.8, 1.0}) {
+    for (const auto& [end, more] : {std::pair(0.6, ""), std::pair(0.8, ""), std::pair(1.0, ""),
+                                    std::pair(0.8, R"(, "highlight_repair": false)")}) {
         const auto depth_at = [&](int x) {
             const double inside_px = 0.5 * (right - left) - std::abs(x + 0.5 - middle);
             const double coc_px = end + slope * std::sqrt(std::max(inside_px, 0.0));
@@ -115,9 +116,9 @@ TEST(DofEdges, ARoundSurfaceIsAsWideAsItsEndAndNotAsItsLastPixel) {
             [&](int x) {
                 return x >= left && x < right ? Column{0, float(depth_at(x))} : Column{1, kApertureFocusM};
             },
-            radius_px);
+            radius_px, more);
         const double edge_radii = (std::sqrt(end * end + slope * slope / 2) - end) / (slope * slope / 2);
-        EXPECT_NEAR(1 - double(out.at(left - 1, 32, 0)), 1 - disk_left_of(edge_radii), 0.04) << end;
+        EXPECT_NEAR(1 - double(out.at(left - 1, 32, 0)), 1 - disk_left_of(edge_radii), 0.04) << end << more;
         EXPECT_NEAR(1 - double(out.at(left - 2, 32, 0)), 0, 0.01) << end;
     }
 }
@@ -191,6 +192,12 @@ TEST(DofEdges, AnAntialiasedEdgeInFocusKeepsItsAlphaBeforeNothing) {
     const Image out = through_aperture("dof", capture, 16, R"("blades": 0)");
     EXPECT_NEAR(out.at(edge, 32, 0), share * ball, 0.03);
     EXPECT_NEAR(out.at(edge, 32, 3), share, 0.03);
+    // A strip of a wall behind, which the blur thins.
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = edge; x < edge + 4; ++x) capture.images["color"].at(x, y, 3) = 1;
+    const double alpha = through_aperture("dof", capture, 16, R"("blades": 0)").at(edge, 32, 3);
+    EXPECT_GT(alpha, share);
+    EXPECT_LT(alpha, 0.75);
 }
 
 /// The distance along a slanted plane is even but for rounding, which must not make it round.
@@ -243,16 +250,21 @@ TEST(DofEdges, TextureBesideASilhouetteIsNoMixtureWhereSilhouettesAreSharp) {
     constexpr double radius_px = 8;
     constexpr int stripe_x = 43;
     const auto is_bar = [](int x) { return x % 16 >= 8 && x % 16 < 11; };
-    const Image out = blurred(
-        [&](int x) {
-            return is_bar(x) ? Column{bar, kApertureNearM}
-                             : Column{x == stripe_x ? stripe : wall, kApertureFocusM};
-        },
-        radius_px);
     double opacity = 0;
     for (int left = 8; left < kWidth; left += 16) opacity += opacity_of(left, left + 3, stripe_x, radius_px);
-    for (int y = 20; y < 44; ++y)
-        EXPECT_NEAR(out.at(stripe_x, y, 0), opacity * bar + (1 - opacity) * stripe, 0.03) << y;
+    // Black bars before a black wall, further on, have no light to mix either.
+    for (const int lit_columns : {kWidth, 62}) {
+        const Image out = blurred(
+            [&](int x) {
+                const float lit = x < lit_columns ? 1 : 0;
+                return is_bar(x) ? Column{lit * bar, kApertureNearM}
+                                 : Column{lit * (x == stripe_x ? stripe : wall), kApertureFocusM};
+            },
+            radius_px);
+        for (int y = 20; y < 44; ++y)
+            EXPECT_NEAR(out.at(stripe_x, y, 0), opacity * bar + (1 - opacity) * stripe, 0.03)
+                << lit_columns << " " << y;
+    }
 }
 
 /// Bars whose sides lie within pixels, before a wall in focus. Antialiasing mixed two fifths of a bar into

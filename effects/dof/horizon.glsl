@@ -30,5 +30,5 @@ float horizon_coc(ivec2 p, float coc_px) {
         sum += clamp(end - coc_px, 0.0, 2.0 * step_px);
         count += 1.0;
     }
-    return coc_px + sum / max(count, 1.0);
+    return coc_px + clamp(kNarrowPx - abs(coc_px), 0.0, 1.0) * sum / max(count, 1.0);
 }

@@ -8,6 +8,9 @@ vec3 color_inside(ivec2 p) { return texelFetch(color, clamp(p, ivec2(0), frame.s
 // miss the middle may cover more of it.
 const float kLeastShare = 0.1, kMostShare = 0.5, kMostShareOfNear = 0.6;
 const float kLeastBlurredPx = 2.0;
+// What is nearer and in focus keeps its antialiasing before the blur: wholly up to the first CoC radius, and no more from the second on,
+// where its own side, which stays mixed, is blurred as widely as a mixture.
+const float kWhollyKeptPx = 0.8, kNotKeptPx = 1.2;
 const float kContrast = 0.15;  // of two surfaces, below which a mixture cannot be seen
 const float kOffLine = 0.03;   // squared distance from the line between both colours, of its length squared
 
@@ -37,7 +40,7 @@ struct Mixture {
 };
 
 bool differ(vec3 self, vec3 across) {
-    return amount(abs(across - self)) >= kContrast * (amount(abs(self)) + amount(abs(across)));
+    return amount(abs(across - self)) > kContrast * (amount(abs(self)) + amount(abs(across)));
 }
 
 // p as a mixture of a colour of its own surface and one from across. beyond: further inside than self.
@@ -50,7 +53,7 @@ Mixture mixture_of(vec3 own, vec3 self, vec3 beyond, vec3 across, float most_sha
     float share = (dot(own - self, difference) - 2.0 * max(dot(change, difference), 0.0)) / length_2;
     vec3 rest = own - self - share * difference;
     float off_line = max(dot(rest, rest), dot(change, change)) / length_2;
-    if (share <= kLeastShare || share > most_share || off_line > kOffLine) return none;
+    if (!(share > kLeastShare && share <= most_share && off_line <= kOffLine)) return none;
     return Mixture(max(own - share * difference, min(own, self)), share, length_2, off_line);
 }
 
@@ -113,10 +116,9 @@ Unmixed unmixed(ivec2 p, vec3 own, float coc_px) {
         way = to;
     }
     if (way == ivec2(0) || is_texture(p, own, coc_px, way, best.length_2)) return Unmixed(own, kind, vec4(0.0));
-    // What is nearer and in focus keeps its antialiasing before the blur. In a blur as narrow as a mixture, both stay as they are.
     bool is_far = best_coc < coc_px;
     float near_px = is_far ? abs(best_coc) : kLeastBlurredPx;
-    float seen = near_px < kLeastBlurredPx ? clamp(2.5 * (1.2 - near_px), 0.0, 1.0) : 0.0;
+    float seen = near_px < kLeastBlurredPx ? clamp((kNotKeptPx - near_px) / (kNotKeptPx - kWhollyKeptPx), 0.0, 1.0) : 0.0;
     vec4 near = seen * vec4(max(own - (1.0 - best.share) * best.rest, vec3(0.0)), best.share);
     return Unmixed(near_px < kLeastBlurredPx ? mix(own, best.rest, seen) : best.rest, is_far ? kMixture : kNearMixture, near);
 }

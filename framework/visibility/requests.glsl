@@ -25,6 +25,6 @@ uint mixed(uint x) {
     return x ^ (x >> 16);
 }
 
-// Further attempts of all the samples of a pixel: llvmpipe ends every loop of an invocation once 65,535 turns are over in all, without an error
-// (lp_bld_limits.h), and what comes after it would neither be counted nor have a place.
+// Further attempts of all the samples of a pixel. llvmpipe ends every loop of an invocation after 65,535 turns in all, without an error
+// (lp_bld_limits.h). The samples after that would neither be counted nor have a place.
 uint attempts_left = 4096u;

@@ -138,7 +138,7 @@ def antialiased(family: list[Effect]) -> dict[tuple[float, float], dict[str, flo
     capture, found = ROOT / "scenes/starter/gbuffer_0001.exr", {}
     for focus_m, f_number in STARTER_LENSES:
         truth = through_lens(1, focus_m, 0.05 / f_number / 2, 1024)
-        params = {"focus_distance": focus_m, "f_number": f_number, "focal_length": 50, "sensor_width": 36}
+        params = {"focus_distance": focus_m, "f_number": f_number, "focal_length": 50, "sensor_width": 36, "lens_model": "pinhole"}
         shown = {"sharp": read_exr(capture)}
         for effect in family:
             aperture = effect.with_blades(0) or effect.closest_to_hexagon()
