@@ -8,6 +8,8 @@ const rank = (label, typed) =>
   label.startsWith(typed) ? 2 : label.includes(`_${typed}`) ? 1 : label.includes(typed) ? 0 : -1;
 
 export class Completion {
+  #isAsked = false;
+  #isWaiting = false;
   #found = [];
   #at = 0;
   #span = null;
@@ -47,7 +49,12 @@ export class Completion {
         .filter((entry) => entry.rank >= 0 && (typed || isAsked || found.isOpen))
         .sort((a, b) => b.rank - a.rank)
         .slice(0, MOST);
-    if (!fitting.length || (fitting.length === 1 && fitting[0].label === found.typed)) return this.close();
+    this.#isAsked = isAsked;
+    if (!fitting.length || (fitting.length === 1 && fitting[0].label === found.typed)) {
+      this.close();
+      this.#isWaiting = true;
+      return;
+    }
     this.#found = fitting;
     this.#span = found;
     this.list.replaceChildren(
@@ -61,7 +68,13 @@ export class Completion {
     this.#place();
   }
 
+  /** After what fits has become known: a list that was wanted before opens, or has it too. */
+  refresh() {
+    if (this.isOpen || this.#isWaiting) this.open(this.#isAsked);
+  }
+
   close() {
+    this.#isWaiting = false;
     if (!this.isOpen) return;
     this.node.hidden = true;
     this.list.replaceChildren();

@@ -52,6 +52,7 @@ export class TextView {
     if (this.#schema?.revision === effects_revision) return;
     try {
       this.#schema = { revision: effects_revision, schema: await get("/api/schema") };
+      this.code.completion.refresh();
     } catch (error) {
       notify(error.message, true);
     }

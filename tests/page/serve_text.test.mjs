@@ -19,11 +19,13 @@ const caretBehind = (area, words) =>
     node.setSelectionRange(at, at);
   }, words);
 const offered = (page) => page.locator("#panel-text .completion li").allInnerTexts();
+const offersAtLeast = (page, count) => page.locator("#panel-text .completion li").nth(count - 1).waitFor();
 
 inPage("completes keys and words of the look from the schema, by the keyboard alone", async (page) => {
   const area = await openText(page);
   await caretBehind(area, '{ "effect": "vignette"');
   await page.keyboard.type(', "par');
+  await offersAtLeast(page, 1);
   assert.deepEqual(await offered(page), ["params"]);
   await page.keyboard.press("Enter");
   await page.keyboard.type("{ ");
@@ -56,12 +58,26 @@ inPage("completes keys and words of the look from the schema, by the keyboard al
   await page.waitForFunction((text) => document.querySelector("#panel-text textarea").value === text, LOOK);
 });
 
+inPage("opens the list that was wanted before its words had come", async (page) => {
+  const wanted = new Promise((resolve) => page.route("**/api/schema*", resolve));
+  await page.keyboard.press("t");
+  const area = page.getByLabel("The look as JSON");
+  await area.focus();
+  await area.fill('{ "aftershade": 1, "steps": [ { "effect": "');
+  await page.keyboard.press("Control+Space");
+  assert.deepEqual(await offered(page), []);
+  await (await wanted).continue();
+  await offersAtLeast(page, 10);
+  await area.fill(LOOK);
+  await page.unroute("**/api/schema*");
+});
+
 inPage("offers the effects, and for each step its own parameters and presets alone", async (page) => {
   const area = await openText(page);
   await area.fill('{ "aftershade": 1, "steps": [ { "effect": "');
   await page.keyboard.press("Control+Space");
   const effects = await page.evaluate(() => [...window.aftershade.store.effects.keys()]);
-  assert.ok((await offered(page)).length >= Math.min(effects.length, 38));
+  await offersAtLeast(page, Math.min(effects.length, 38));
   await area.fill('{ "aftershade": 1, "steps": [ { "effect": "dof" }, { "effect": "bokeh", "preset": "');
   await page.keyboard.press("Control+Space");
   assert.deepEqual((await offered(page)).sort(), Object.keys(described("bokeh").presets).sort());
