@@ -32,6 +32,7 @@ constexpr const char* kOtherFolders[] = {"mesa_shader_cache_db", "mesa_shader_ca
 constexpr off_t kIndexBytes = 8 + 65536 * 20;  // the cache's size, and keys
 /// A file of one shader, which is only read, replaced and removed; others are written in place.
 constexpr std::size_t kShaderNameLength = 38;
+constexpr std::size_t kShaderFolderNameLength = 2;  // of the 256 folders that hold these files
 
 bool is_disabled() {
     for (const char* name : {"MESA_SHADER_CACHE_DISABLE", "MESA_GLSL_CACHE_DISABLE"})
@@ -73,7 +74,8 @@ std::string planted_below(const fs::path& folder) {
         if (entry->is_symlink(gone))
             return path + ": is a symbolic link, which is not followed here (remove it)";
         if (entry->is_directory(gone)) {
-            if (is_private(entry->path())) entry.disable_recursion_pending();
+            const bool is_of_shaders = entry->path().filename().native().size() == kShaderFolderNameLength;
+            if (is_of_shaders && is_private(entry->path())) entry.disable_recursion_pending();
             continue;
         }
         if (!entry->is_regular_file(gone) && !gone && entry->exists(gone))

@@ -113,6 +113,7 @@ const std::vector<Planting>& plantings() {
         {"fresh/mesa_shader_cache/index", To::absent, one, fresh, false},
         {"fresh/mesa_shader_cache/index", To::second_name, one, fresh, false},
         {"fresh/mesa_shader_cache/index", To::pipe, one, fresh, false},
+        {"fresh/mesa_shader_cache/part0/mesa_cache.db", To::file, one, fresh, false},
         {"fresh/mesa_shader_cache/index", To::file, {"doctor", "--json"}, fresh, false},
         {"fresh/mesa_shader_cache/index",
          To::file,
