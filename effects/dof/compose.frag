@@ -1,10 +1,6 @@
 #version 450 core
 #include <pass>
-#include "blur.glsl"
-#define LOWER_FRONT front
-#define LOWER_BACK back
-#define LOWER_HIDES hides
-#include "upsample.glsl"
+#include "fronts.glsl"
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
@@ -16,25 +12,19 @@ void main() {
     vec2 center = vec2(p) + 0.5;
     vec4 around_coc = texelFetch(around, p / kTile, 0);
     float visible_coc = tap_light(p).coc, radius_px = abs(own.coc);
-    float reach_px = front_reach_px(around_coc, own.coc, visible_coc);
-    bool is_wide = radius_px > kFullSizePx - 1.0, is_reached_far = reach_px > kFullSizePx;
-    Coarse coarse = upsampled(p, own.coc, visible_coc, kHalfAlikePx, kFullSizePx, (frame.size + 1) / 2 - 1);
-    bool is_lost = coarse.likeness < kLeastLikeness;
+    Front front = front_at(p, own, visible_coc, around_coc);
+    bool is_wide = radius_px > kFullSizePx - 1.0;
 
-    if (radius_px >= kLeastBlurPx || reach_px >= kLeastBlurPx) prepare_outline_at(center);
-    bool is_own = radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || is_lost);
-    bool is_all = reach_px >= kLeastBlurPx && (!is_reached_far || is_lost || coarse.reached < kLeastReached),
-         is_narrow = is_reached_far && !is_all && texelFetch(beyond, p / kBlock, 0).g < own.coc;
-    Gathered found = gather(Point(center, own, visible_coc, is_all ? reach_px : is_narrow ? kFullSizePx : kNotAsked, is_narrow ? kNarrow : kAll,
-                                  is_own ? radius_px : kNotAsked), around_coc);
+    if (radius_px >= kLeastBlurPx || front.reach_px >= kLeastBlurPx) prepare_outline_at(center);
+    bool is_own = radius_px >= kLeastBlurPx && (radius_px < kFullSizePx || front.is_lost);
+    Gathered found = gather(Point(center, own, visible_coc, front.asked_px, front.which, is_own ? radius_px : kNotAsked), around_coc);
     Back surface = found.surface;
-    if (is_wide && !is_lost) {
+    if (is_wide && !front.is_lost) {
         float share = clamp(radius_px - kFullSizePx + 1.0, 0.0, 1.0);
-        surface.color = mix(surface.color, coarse.surface.color, share);
-        surface.share = mix(surface.share, coarse.surface.share, share);
+        surface.color = mix(surface.color, front.coarse.surface.color, share);
+        surface.share = mix(surface.share, front.coarse.surface.share, share);
     }
-    Layer over = found.over;
-    if (is_reached_far && !is_all) over = both(over, coarse.over);
+    Layer over = whole(front, found.over);
 #ifdef HAS_KEPT
     vec4 near = texelFetch(kept, p, 0);
     float covered = max(near.a - over.opacity, 0.0) / max(1.0 - over.opacity, 1e-3), uncovered = 1.0 - covered;

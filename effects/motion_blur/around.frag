@@ -79,18 +79,29 @@ int reach_tiles(ivec2 p) {
     return min(int(ceil(way / float(kTile))), range);
 }
 
+// Whether light of the lens may come over the tile from this one.
+bool sends_light(ivec2 tile) {
+#ifdef HAS_TILE_VEILED
+    return texelFetch(tile_veiled, tile, 0).r > 0.0;
+#else
+    return false;
+#endif
+}
+
 void main() {
     ivec2 last = ivec2(tile_path_size.xy) - 1, p = ivec2(gl_FragCoord.xy);
     int range = max(reach_tiles(p), 1);
     vec4 furthest = texelFetch(tile_path, p, 0), low = texelFetch(tile_low, p, 0), high = texelFetch(tile_high, p, 0);
     float way = longest_way_px(furthest), near_m = texelFetch(tile_depth, p, 0).r;
     vec4 near = texelFetch(tile_near, p, 0);
+    bool is_veiled = sends_light(p);
     for (int y = max(p.y - range, 0); y <= min(p.y + range, last.y); ++y)
         for (int x = max(p.x - range, 0); x <= min(p.x + range, last.x); ++x) {
             vec4 path = texelFetch(tile_path, ivec2(x, y), 0);
             ivec2 offset = ivec2(x, y) - p;
             float its_way = longest_way_px(path), gap = float((max(max(abs(offset.x), abs(offset.y)), 1) - 1) * kTile);
             if (its_way <= gap - 1.0 || !passes_over(offset, path)) continue;
+            is_veiled = is_veiled || sends_light(ivec2(x, y));
             low = min(low, texelFetch(tile_low, ivec2(x, y), 0));
             high = max(high, texelFetch(tile_high, ivec2(x, y), 0));
             vec4 its_near = texelFetch(tile_near, ivec2(x, y), 0);
@@ -107,5 +118,6 @@ void main() {
     out_around_near = near;
     out_around_depth = near_m;
     out_around_kind = way < kLeastWay || is_still(low, high) ? kStill : is_even(furthest, low, high) ? kEven
+                    : is_veiled                                  ? kVeiled
                     : is_crowded(furthest, near, near_m, texelFetch(tile_way, p, 0).g) ? kCrowded : kUneven;
 }

@@ -30,16 +30,16 @@ float amount(vec3 rgb) { return rgb.r + rgb.g + rgb.b; }
 
 // The light at a place between pixels; that of the nearest one where the others outshine it or it outshines them: a light beside a
 // thing has a path of its own, and would be dragged along.
-vec4 light_at(vec2 point, ivec2 texel) {
+vec4 light_at(sampler2D image, vec2 point) {
     const float kOutshines = 8.0;
-    vec4 mixed = color_at(point), nearest = texelFetch(color, texel, 0);
+    vec4 mixed = textureLod(image, point * picture_px, 0.0), nearest = texelFetch(image, texel_at(point), 0);
     vec2 weight = 1.0 - abs(fract(point) - 0.5);
     float share = weight.x * weight.y, all = amount(nearest.rgb);
     float own = all * max(1.0 - share, 1e-3), others = max(amount(mixed.rgb) - share * all, 0.0);  // times the others' share
     return max(own, others) > kOutshines * min(own, others) ? nearest : mixed;
 }
 
-vec4 light_at(vec2 point) { return light_at(point, texel_at(point)); }
+vec4 light_at(vec2 point) { return light_at(picture, point); }
 
 // The mean light of two places, or of one; `share`: of the second. As light_at, and that of the nearest pixels where the places are not beside
 // each other.
@@ -47,14 +47,14 @@ vec4 light_of_two(vec2 a, vec2 b, float share) {
     const float kOutshines = 8.0, kApartPx = 1.5;
     vec2 middle = mix(a, b, share);
     ivec2 a_texel = texel_at(a), b_texel = texel_at(b);
-    vec4 mixed = color_at(middle), own = mix(texelFetch(color, a_texel, 0), texelFetch(color, b_texel, 0), share);
+    vec4 mixed = color_at(middle), own = mix(texelFetch(picture, a_texel, 0), texelFetch(picture, b_texel, 0), share);
     vec2 by_a = max(1.0 - abs(middle - 0.5 - vec2(a_texel)), 0.0), by_b = max(1.0 - abs(middle - 0.5 - vec2(b_texel)), 0.0);
     float known = by_a.x * by_a.y + (a_texel == b_texel ? 0.0 : by_b.x * by_b.y), amount_known = amount(own.rgb);
     float here = amount_known * max(1.0 - known, 1e-3), others = max(amount(mixed.rgb) - known * amount_known, 0.0);
     return dot(a - b, a - b) > kApartPx * kApartPx || max(here, others) > kOutshines * min(here, others) ? own : mixed;
 }
 
-float amount_at(vec2 point) { return amount(texelFetch(color, texel_at(point), 0).rgb); }
+float amount_at(vec2 point) { return amount(texelFetch(picture, texel_at(point), 0).rgb); }
 
 // Where a pixel lies that shows what the thing at the point hides: from where it comes, or on its other side. What stands in front of
 // the thing is not behind it, and a light that is seen on one side, or at the very edge, does not go on behind the thing.
@@ -122,23 +122,26 @@ vec4 seen_at(vec2 point, vec4 furthest, vec4 other, Motion own, float t) {
 #endif
 
 // Two loops, because most is found at a first look, and the first one's turns are then shorter: software GL takes all branches.
-#if defined(CROWDED) || defined(KNOWS_LAYERS)
+#if defined(CROWDED) || defined(KNOWS_LAYERS) || defined(VEILED)
+#include "veil.glsl"
+
 vec4 through_shutter(ivec2 p, vec2 point, Motion own, vec4 furthest) {
     int taps = tap_count(furthest);
     float shift = time_shift(furthest, taps);
-    vec4 sum = vec4(0.0), other = other_guess(p / kTile, own, furthest);
+    vec4 sum = vec4(0.0), other = other_guess(p / kTile, own, furthest), sender = path_of_sender(p);
     int start = 0;
     do {
         uint open = 0u;  // times at which a second look is due
         int i = start, end = min(start + kTimes, taps);
         do {
-            Finds finds = finds_at(point, furthest, other, tap_time(i, shift, taps));
-            Found seen = first_of(finds);
-            if (seen.comes && seen.is_sure && seen.share == 1.0) sum += light_at(seen.from);
+            float t = tap_time(i, shift, taps);
+            Found seen = first_of(finds_at(point, furthest, other, t));
+            if (seen.comes && seen.is_sure && seen.share == 1.0) sum += under_veil(light_at(seen.from), seen.from, point, sender, furthest, t);
             else open |= 1u << uint(i - start);
         } while (++i < end);
         while (open != 0u) {
-            sum += seen_at(point, furthest, other, own, tap_time(start + findLSB(open), shift, taps));
+            float t = tap_time(start + findLSB(open), shift, taps);
+            sum += under_veil(seen_at(point, furthest, other, own, t), kNowhere, point, sender, furthest, t);
             open &= open - 1u;
         }
         start = end;

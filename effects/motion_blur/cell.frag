@@ -30,6 +30,19 @@ void main() {
                 high = max(high, behind);
             }
 #endif
+#ifdef HAS_FOREGROUND_PLACE
+            // What the lens spreads here moves over the cell, too, and so does what it covers.
+            ivec2 sender = sender_of(p);
+            uvec2 sent = packed_path_at(sender);
+            ivec4 sent_numbers = packed_numbers(sent), covered = packed_numbers(packed_path_at(covered_by_light(p)));
+            float sent_way = longest_way_px(vec4(sent_numbers)), sent_m = depth_of(sender);
+            low = min(low, min(sent_numbers, covered));
+            high = max(high, max(sent_numbers, covered));
+            furthest = sent_way > way ? sent : furthest;
+            way = max(way, sent_way);
+            near = sent_m < near_m ? sent : near;
+            near_m = min(near_m, sent_m);
+#endif
             near = known.x < near_m ? words : near;
             near_m = min(near_m, known.x);
             far_m = max(far_m, known.x);

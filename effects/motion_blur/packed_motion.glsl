@@ -1,14 +1,27 @@
 // Motion of the picture's pixels, which the pass motion has packed.
 #include "motion.glsl"
 
-uvec2 packed_path_at(ivec2 p) { return texelFetch(motion, p, 0).xy; }
+#ifdef HAS_FOREGROUND_PLACE
+#include "foreground.glsl"
+#endif
+
+// Under light of the lens: of the surface that it covers.
+ivec2 shown_at(ivec2 p) {
+#ifdef VEILED
+    return covered_by_light(p);
+#else
+    return p;
+#endif
+}
+
+uvec2 packed_path_at(ivec2 p) { return texelFetch(motion, shown_at(p), 0).xy; }
 
 vec4 path_of(ivec2 p) { return unpack_path(packed_path_at(p)); }
 
 #ifdef SHARES_PIXELS
-vec2 depth_and_share(ivec2 p) { return texelFetch(motion_share, p, 0).xy; }
+vec2 depth_and_share(ivec2 p) { return texelFetch(motion_share, shown_at(p), 0).xy; }
 #else
-vec2 depth_and_share(ivec2 p) { return vec2(texelFetch(depth, p, 0).r, 1.0); }
+vec2 depth_and_share(ivec2 p) { return vec2(texelFetch(depth, shown_at(p), 0).r, 1.0); }
 #endif
 
 float depth_of(ivec2 p) { return depth_and_share(p).x; }

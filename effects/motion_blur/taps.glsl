@@ -29,10 +29,16 @@ float part_time(Parts parts, float place_px) {
 
 float tap_time(int i, float shift, int taps) { return kOpens + (float(i) + 0.5 + shift) / float(taps); }
 
-// Software GL loads a uniform lane by lane wherever it is named, but divides only here, before all loops.
-vec2 color_px = 1.0 / color_size.xy;
+#ifdef VEILED
+#define picture clean
+#else
+#define picture color
+#endif
 
-vec4 color_at(vec2 point) { return textureLod(color, point * color_px, 0.0); }
+// Software GL loads a uniform lane by lane wherever it is named, but divides only here, before all loops.
+vec2 picture_px = 1.0 / vec2(frame.size);
+
+vec4 color_at(vec2 point) { return textureLod(picture, point * picture_px, 0.0); }
 
 // The conversion rounds down, as nothing is below 0 here.
 ivec2 texel_at(vec2 point) { return ivec2(clamp(point, vec2(0.0), vec2(frame.size - 1))); }

@@ -8,4 +8,6 @@ bool even_tiles(ivec2 tile) { return kind_of(tile) == kEven; }
 
 bool uneven_tiles(ivec2 tile) { return kind_of(tile) == kUneven; }
 
+bool veiled_tiles(ivec2 tile) { return kind_of(tile) == kVeiled; }
+
 bool crowded_tiles(ivec2 tile) { return kind_of(tile) == kCrowded; }

@@ -27,7 +27,8 @@ grammar::Form role_form() {
 
 grammar::Form step_role_form() {
     std::vector<std::string> names = role_names();
-    names.emplace_back(kLightChangeRole);
+    for (const std::string_view name : {kLightChangeRole, kForegroundRole, kForegroundPlaceRole})
+        names.emplace_back(name);
     return grammar::name_of(std::move(names), "a role", aov_pattern());
 }
 

@@ -1,5 +1,6 @@
 #include "framework/image/role.h"
 
+#include <algorithm>
 #include <cassert>
 #include <charconv>
 #include <limits>
@@ -86,26 +87,49 @@ const std::vector<ChannelRole>& roles() {
     return table;
 }
 
+std::vector<ChannelRole> make_step_roles() {
+    const auto make = [](std::string_view name, int channels, bool filterable, float outside, RoleKind kind,
+                         const char* meaning) {
+        const std::string text{name};
+        return ChannelRole{text,
+                           channels,
+                           ComponentType::float32,
+                           filterable,
+                           outside,
+                           layer(text, std::string_view("RGBA").substr(0, std::size_t(channels))),
+                           filterable ? PixelType::half : PixelType::float32,
+                           meaning,
+                           kind};
+    };
+    return {make(kLightChangeRole, 3, true, 1, RoleKind::coverage,
+                 "light on a surface over that of the frame before; 1 where that is unknown"),
+            make(kForegroundRole, 4, true, 0, RoleKind::light,
+                 "light spread by a lens from surfaces in front of what a pixel shows, premultiplied"),
+            make(kForegroundPlaceRole, 4, false, 0, RoleKind::coverage,
+                 "px from the pixel to where foreground comes from, and to a pixel of the surface behind")};
+}
+
+const std::vector<ChannelRole>& step_roles() {
+    static const std::vector<ChannelRole> table = make_step_roles();
+    return table;
+}
+
 }  // namespace
 
 std::span<const ChannelRole> channel_roles() {
     return roles();
 }
 
+bool is_step_role(std::string_view name) {
+    return std::ranges::any_of(step_roles(), [&](const ChannelRole& role) { return role.name == name; });
+}
+
 std::optional<ChannelRole> find_role(const RoleId& id) {
     const std::string& name = id.name();
     for (const ChannelRole& role : roles())
         if (role.name == name) return role;
-    if (name == kLightChangeRole)
-        return ChannelRole{name,
-                           3,
-                           ComponentType::float32,
-                           true,
-                           0,
-                           layer(name, "RGB"),
-                           PixelType::half,
-                           "light on a surface over that of the frame before; 1 where that is unknown",
-                           RoleKind::coverage};
+    for (const ChannelRole& role : step_roles())
+        if (role.name == name) return role;
     if (id.is_coverage())
         return ChannelRole{name,
                            1,

@@ -9,4 +9,15 @@ namespace aftershade {
 /// the step averaged it over; 0 for none.
 inline constexpr std::string_view kLightChangeRole = "light_change";
 
+/// Light that a lens spreads over a pixel from surfaces in front of what the pixel shows, premultiplied, with
+/// its opacity as alpha.
+inline constexpr std::string_view kForegroundRole = "foreground";
+
+/// Offsets from the pixel, px: to where most of `foreground` comes from (R, G), and to a pixel of the surface
+/// behind the one that the pixel shows (B, A), if that surface is seen; else 0.
+inline constexpr std::string_view kForegroundPlaceRole = "foreground_place";
+
+/// What an image of such a role holds where no step has made one is its `outside`.
+bool is_step_role(std::string_view name);
+
 }  // namespace aftershade

@@ -78,7 +78,7 @@ std::vector<RoleId> Pipeline::capture_roles() const {
             if (source.step < 0 && input.frame == 0 && step.may_take(input)) add_once(roles, source.output);
         }
         for (const auto& [output, source] : step.before)
-            if (source.step < 0) add_once(roles, source.output);
+            if (source.step < 0 && !source.output.empty()) add_once(roles, source.output);
         for (const RoleId& role : host_roles(step)) add_once(roles, role);
     }
     return roles;
@@ -200,7 +200,7 @@ std::vector<MissingRole> find_missing_roles(const Pipeline& pipeline, const Capt
                     input.instead.empty() ? "" : step.inputs.at(input.instead).output);
         }
         for (const auto& [output, source] : step.before)
-            if (source.step < 0 && !contains(roles, source.output))
+            if (source.step < 0 && !source.output.empty() && !contains(roles, source.output))
                 add("the mix of step '" + step.name + "'", source.output);
         for (const RoleId& role : host_roles(step))
             if (!role.is_coverage() && !contains(roles, role.name()))

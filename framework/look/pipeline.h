@@ -43,7 +43,8 @@ struct PipelineStep {
     ValueSource mix = ParamValue(1.0);
     std::optional<MaskSpec> mask;
     /// By output: the image of that role before the step, which `mix` and `mask` let through. Empty where the
-    /// step has neither.
+    /// step has neither; a source without a name where no step has made an image of that role, and no capture
+    /// can.
     std::map<std::string, InputSource> before;
     bool is_foreign = false;  ///< the effect is not one of the shipped ones
 

@@ -8,6 +8,7 @@
 #include "framework/document/units.h"
 #include "framework/file/png_file.h"
 #include "framework/image/role.h"
+#include "framework/image/step_role.h"
 #include "framework/look/look_content.h"
 #include "framework/look/pipeline.h"
 #include "framework/look/wiring.h"
@@ -244,6 +245,7 @@ private:
             for (const InputSpec& input : step.manifest->inputs)
                 if (input.role == output.role && input.frame == 0 && input.layer < 0 && !input.from_capture)
                     source = step.inputs.at(input.name);
+            if (source.step < 0 && is_step_role(output.role)) source.output.clear();
             if (source.step < 0 && kind_of_role(output.role) == RoleKind::display)
                 diagnostics_.error(
                     place,

@@ -365,21 +365,26 @@ void GraphBuilder::add_mix(StepBuild& build) {
         const auto mask_image = [&](const RoleId& role) {
             return on_grid(import(role), {-1, role.is_coverage() ? kMaskRole : role.name()});
         };
-        const graph::TextureHandle before = on_grid(resolve(source), source);
-        pass.reads = {{before, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(before)},
-                      {build.textures.at(name), 1}};
+        if (source.output.empty()) {
+            const auto role = find_role(build.manifest().find_output(name)->role);
+            defines.emplace_back(role->outside == 0 ? "NOTHING_IS_0" : "NOTHING_IS_1");
+        } else {
+            const graph::TextureHandle before = on_grid(resolve(source), source);
+            pass.reads.push_back({before, 0, gpu::Filter::nearest, gpu::Wrap::clamp, input_level(before)});
+        }
+        pass.reads.push_back({build.textures.at(name), 1});
         if (step.mask && !step.mask->role.empty()) {
-            defines = {"MASK_IMAGE"};
+            defines.emplace_back("MASK_IMAGE");
             pass.reads.push_back({mask_image(step.mask->role), 2});
         } else if (step.mask && step.mask->names_objects() &&
                    frame_.has_image(RoleId::coverage(step.mask->objects), 0)) {
-            defines = {"MASK_IMAGE"};
+            defines.emplace_back("MASK_IMAGE");
             pass.reads.push_back({mask_image(RoleId::coverage(step.mask->objects)), 2});
         } else if (step.mask && !step.mask->objects.empty()) {
-            defines = {"MASK_OBJECTS"};
+            defines.emplace_back("MASK_OBJECTS");
             pass.reads.push_back({mask_image(kObjectIdRole), 2});
         } else if (step.mask) {
-            defines = {"MASK_FILE"};
+            defines.emplace_back("MASK_FILE");
             pass.reads.push_back({mask_of(build), 2, gpu::Filter::linear});
         }
         bind_block(build, BlockKind::mix, pass);

@@ -1,7 +1,10 @@
 #version 450 core
 // A step's "mix" and "mask": the image before the step and the image that it made, by amount * mask. The host
-// defines MASK_IMAGE, MASK_FILE or MASK_OBJECTS.
+// defines MASK_IMAGE, MASK_FILE or MASK_OBJECTS; and NOTHING_IS_0 or
+// NOTHING_IS_1 where no step has made the image before, and no capture can.
+#if !defined(NOTHING_IS_0) && !defined(NOTHING_IS_1)
 layout(binding = 0) uniform sampler2D before;
+#endif
 layout(binding = 1) uniform sampler2D after;
 
 layout(std140, binding = 0) uniform MixBlock {
@@ -45,7 +48,14 @@ void main() {
     float weight = clamp(mask(pixel), 0.0, 1.0);
     if (mixing.invert != 0) weight = 1.0 - weight;
     weight *= mixing.amount;
-    vec4 a = texelFetch(before, pixel, 0), b = texelFetch(after, pixel, 0);
+#if defined(NOTHING_IS_0)
+    vec4 a = vec4(0.0);
+#elif defined(NOTHING_IS_1)
+    vec4 a = vec4(vec3(1.0), 0.0);
+#else
+    vec4 a = texelFetch(before, pixel, 0);
+#endif
+    vec4 b = texelFetch(after, pixel, 0);
     // The ends are exact, and infinite depth stays what it is: inf - inf would be NaN.
     result = weight <= 0.0 ? a : weight >= 1.0 ? b : mix(a, b, weight);
 }

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "framework/capture/cryptomatte.h"
 #include "framework/file/png_file.h"
@@ -38,6 +41,28 @@ TEST_F(MixAndMask, MixGoesFromTheImageBeforeToTheImageMade) {
                     0.625f);
     Bench set(effects_, look_of(R"({ "effect": "white" })"), {{"white.mix=0.25"}, {}});
     EXPECT_FLOAT_EQ(set.color(scene()).at(1, 1, 0), 0.4375f);
+}
+
+/// No capture has an image of such a role, so there is none before the first step that makes one.
+TEST_F(MixAndMask, MixesWhatStepsAloneOutputWithNothing) {
+    for (const auto& [role, nothing] : {std::pair("foreground", 0.0f), {"light_change", 1.0f}}) {
+        const auto image = [role = role](const char* name) {
+            return fmt::format(R"("{}": {{ "role": "{}" }})", name, role);
+        };
+        effects_.add("makes",
+                     fmt::format(R"("inputs": {{ "color": {{ "role": "color" }} }}, "outputs": {{ {} }},
+                                    "passes": ["main"])",
+                                 image("made")),
+                     "void main() { out_made = vec4(3.0) + 0.0 * texelFetch(color, ivec2(0), 0); }\n");
+        effects_.add("shows",
+                     fmt::format(R"("inputs": {{ {} }}, "outputs": {{ "color": {{ "role": "color" }} }},
+                                    "passes": ["main"])",
+                                 image("made")),
+                     "void main() { out_color = texelFetch(made, ivec2(gl_FragCoord.xy), 0); }\n");
+        const Image half = run(R"({ "effect": "makes", "mix": 0.5 }, { "effect": "shows" })");
+        EXPECT_FLOAT_EQ(half.at(1, 1, 0), 0.5f * (nothing + 3)) << role;
+        EXPECT_FLOAT_EQ(half.at(1, 1, 3), 1.5f) << role;
+    }
 }
 
 TEST_F(MixAndMask, AMaskIsARoleAnObjectOrAFile) {
