@@ -54,7 +54,7 @@ def counting_copy(names: Sequence[str], folders: Sequence[Path], work: Path) -> 
     folder = work / "counting"
     shutil.rmtree(folder, ignore_errors=True)
     for part in "glsl", "profiles":
-        shutil.copytree(ROOT / part, folder / part)
+        shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("isf"))  # has names of its own for fetches
     (folder / "effects").mkdir()
     for i, source in enumerate(folders):
         for name in names:
