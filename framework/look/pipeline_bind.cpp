@@ -334,8 +334,9 @@ private:
         for (const WiringSpec& wiring : look_step.wiring) wire_input(wiring, step);
         for (const InputSpec& input : step.manifest->inputs) {
             const bool of_capture = input.frame != 0 || input.from_capture || input.layer >= 0;
-            const InputSource source = of_capture ? InputSource{-1, input.image_role()}
-                                                  : nearest_source(input.role, pipeline_.steps.size());
+            const std::size_t end = is_step_role(input.role) ? end_of_color(step) : pipeline_.steps.size();
+            const InputSource source =
+                of_capture ? InputSource{-1, input.image_role()} : nearest_source(input.role, end);
             step.inputs.try_emplace(input.name, source);
             // Who can do without colour does not build on it: it may look at it to the side of the display.
             if (input.role == kColorRole && !input.optional && pipeline_.writes_role(kDisplayRole))
@@ -343,6 +344,19 @@ private:
                     look_step.place,
                     "step '" + step.name + "' reads color after a step has made display; put it before");
         }
+    }
+
+    /// One past the step whose color it takes: what a later one says of its own light is not in that color.
+    std::size_t end_of_color(const PipelineStep& step) const {
+        for (const InputSpec& input : step.manifest->inputs) {
+            if (input.role != kColorRole || input.layer >= 0 || input.frame != 0) continue;
+            const auto wired = step.inputs.find(input.name);
+            const int last = wired != step.inputs.end()
+                                 ? wired->second.step
+                                 : nearest_source(kColorRole, pipeline_.steps.size()).step;
+            return std::size_t(last + 1);
+        }
+        return pipeline_.steps.size();
     }
 
     /// For the `index`-th step.

@@ -20,6 +20,21 @@ TEST(StepOrder, WarnsOfALensAfterAShutter) {
               "");
 }
 
+TEST(StepRoles, ComeWithTheColorThatHasTheirLight) {
+    const EffectFolder none;
+    const auto step_of = [&](const std::string& steps) {
+        return Bound(none, look_of(steps)).pipeline().steps.back().inputs.at("foreground").step;
+    };
+    EXPECT_EQ(step_of(R"({"effect": "dof"}, {"effect": "motion_blur"})"), 0);
+    EXPECT_EQ(step_of(R"({"effect": "dof"}, {"effect": "bloom"}, {"effect": "motion_blur"})"), 0);
+    EXPECT_EQ(step_of(R"({"effect": "dof"}, {"effect": "motion_blur", "in": {"color": "capture.color"}})"),
+              -1);
+    EXPECT_EQ(
+        step_of(R"({"effect": "dof"}, {"name": "wide", "effect": "dof", "in": {"color": "capture.color"}},
+                         {"effect": "motion_blur", "in": {"color": "dof.color"}})"),
+        0);
+}
+
 /// `maker` has a texture of every kind; `show` takes any image to color, `warp` a velocity.
 class Wiring : public testing::Test {
 protected:
