@@ -15,7 +15,7 @@ float inside(ivec2 p) {
     return clamp(2.0 * mix(above, below, part.y) - 1.0, 0.0, 1.0);
 }
 
-// `motion_blur` drags what the lens has blurred along with what moves there: the most that lens blurs on the way, px.
+// `motion_blur` takes light from along the way, which the lens may have blurred there alone: the most that it blurs, px.
 float dragged_px(ivec2 p, float samples) {
     vec4 path = path_at(p);
     int steps = int(ceil(0.5 * longest_way_px(path)));
