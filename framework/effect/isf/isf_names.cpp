@@ -53,7 +53,7 @@ IsfNames::IsfNames(const IsfFile& file, const IsfWords& words) : words_(words) {
         names_[input.name] = unique(snake_case(input.name), is_global, input.name);
     }
     for (const IsfImport& import : file.imports)
-        names_[import.name] = unique(snake_case(import.name), true, import.name);
+        names_[import.name] = unique(snake_case(import.label), true, import.name);
     for (const IsfPass& pass : file.passes)
         if (!pass.target.empty() && !names_.contains(pass.target))
             names_[pass.target] = unique(snake_case(pass.target), true, pass.target);
