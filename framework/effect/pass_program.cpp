@@ -43,7 +43,7 @@ Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message
         line.file.text().ends_with("isf/vertex_main.glsl"))
         for (std::size_t before = std::size_t(message.line) - 1; before > 0; --before)
             if (const SourceLine& last = source.lines[before - 1]; is_isf_shader(last.file.text()))
-                return {last.file.text(), last.line};
+                return {last.file.text(), last.line, 1};
     return {line.file.text(), line.line, message.column};
 }
 

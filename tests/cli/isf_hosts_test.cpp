@@ -52,6 +52,14 @@ void main() { gl_FragColor = PASSINDEX == 0 ? blur(k(k)) : vec4(IMG_THIS_PIXEL(b
               (std::vector<float>{128 / 255.0f, 0.25f, 0.0f, 1.0f}));
 }
 
+TEST_F(IsfHosts, TakeNamesThatBeginLikeThoseOfIsf) {
+    EXPECT_EQ(first(R"("INPUTS": [{"NAME": "isf_x", "TYPE": "float", "DEFAULT": 0.5}],
+"PASSES": [{"TARGET": "isf", "FLOAT": true}, {"TARGET": "isf_size", "FLOAT": true}, {}])",
+                    "void main() { gl_FragColor = PASSINDEX == 0 ? vec4(isf_x) : PASSINDEX == 1 ? 0.5 * "
+                    "IMG_THIS_PIXEL(isf) : IMG_NORM_PIXEL(isf_size, isf_FragNormCoord); }\n"),
+              std::vector<float>(4, 0.25f));
+}
+
 TEST_F(IsfHosts, TakeTypesAndValuesAsFilesWriteThem) {
     EXPECT_EQ(first(R"("CREDIT": ["you", "me"], "DESCRIPTION": 3, "INPUTS": [
 {"NAME": "a", "TYPE": "FLOAT", "DEFAULT": "0.5", "MIN": "low", "LABEL": 7},

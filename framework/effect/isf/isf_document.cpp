@@ -131,9 +131,8 @@ private:
             fault(place, thing + " is called '" + name + "', which is a word of GLSL itself; choose another");
             return false;
         }
-        static const std::set<std::string> kOfIsf = {"TIME",       "TIMEDELTA", "DATE",
-                                                     "FRAMEINDEX", "PASSINDEX", "RENDERSIZE"};
-        if (kOfIsf.contains(name) || name.starts_with("isf_") || name.starts_with("IMG_")) {
+        if (isf_words::kOfIsf.contains(name) || isf_words::kAliases.contains(name) ||
+            name == "isf_vertShaderInit" || name.starts_with("IMG_")) {
             fault(place, thing + " is called '" + name + "', which is a name of ISF itself; choose another");
             return false;
         }

@@ -159,7 +159,7 @@ std::optional<IsfFile> parse_isf(const fs::path& path, std::string text, Diagnos
         return 1 + int(std::count(file.text.begin(), file.text.begin() + std::ptrdiff_t(at), '\n'));
     };
     if (const std::size_t nul = file.text.find('\0'); nul != std::string::npos) {
-        diagnostics.error({path.string(), line_at(nul)}, "a NUL byte: an ISF file is text");
+        diagnostics.error({path.string(), line_at(nul), 1}, "a NUL byte: an ISF file is text");
         return std::nullopt;
     }
     if (begin == std::string::npos || end == std::string::npos) {
