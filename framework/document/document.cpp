@@ -65,8 +65,8 @@ private:
 /// character is found by walking back from there.
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 public:
-    TreeBuilder(std::string_view text, const std::string& file, Diagnostics& diagnostics)
-        : text_(text), file_(file), diagnostics_(diagnostics) {
+    TreeBuilder(std::string_view text, const std::string& file, Diagnostics& diagnostics, SameKeys same_keys)
+        : text_(text), file_(file), diagnostics_(diagnostics), same_keys_(same_keys) {
         for (std::size_t i = 0; i < text.size(); ++i)
             if (text[i] == '\n') line_starts_.push_back(i + 1);
     }
@@ -107,9 +107,15 @@ public:
         const Place at = place(string_start(offset() - 1));
         Node& object = *stack_.back();
         if (!keys_.back().insert(value).second) {
-            diagnostics_.error(at, "the key '" + value + "' occurs twice in one object; first at line " +
-                                       std::to_string(first_line_of(object, value)));
-            return false;
+            const auto first = std::ranges::find(object.members, value, &Member::key);
+            const std::string message = "the key '" + value + "' occurs twice in one object; first at line " +
+                                        std::to_string(first->key_place.line);
+            if (same_keys_ == SameKeys::refuse) {
+                diagnostics_.error(at, message);
+                return false;
+            }
+            diagnostics_.warning(at, message + " (the last one counts)");
+            object.members.erase(first);
         }
         object.members.push_back({value, at, {}});
         return true;
@@ -220,11 +226,6 @@ private:
         return true;
     }
 
-    static int first_line_of(const Node& object, const std::string& key) {
-        const auto same = [&](const Member& member) { return member.key == key; };
-        return std::find_if(object.members.begin(), object.members.end(), same)->key_place.line;
-    }
-
     /// "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ..." without its
     /// head.
     static std::string plain_message(std::string_view what) {
@@ -239,6 +240,7 @@ private:
     std::string_view text_;
     const std::string& file_;
     Diagnostics& diagnostics_;
+    const SameKeys same_keys_;
     std::vector<std::size_t> line_starts_{0};
     const char* reached_ = nullptr;
     Node root_;
@@ -248,7 +250,8 @@ private:
 
 }  // namespace
 
-std::optional<Node> parse_document(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
+std::optional<Node> parse_document(std::string_view text, const std::string& file, Diagnostics& diagnostics,
+                                   SameKeys same_keys) {
     if (text.size() > kMaxDocumentBytes) {
         diagnostics.error({file}, "is larger than " + std::to_string(kMaxDocumentBytes) + " bytes");
         return std::nullopt;
@@ -256,7 +259,7 @@ std::optional<Node> parse_document(std::string_view text, const std::string& fil
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     // No editor counts the mark as a column.
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-    TreeBuilder builder(text, file, diagnostics);
+    TreeBuilder builder(text, file, diagnostics, same_keys);
     if (text.starts_with("\x76\x2f\x31\x01") || text.starts_with("\x89PNG")) {
         diagnostics.error({file},
                           "is a picture, and this place takes a JSON document; the look comes before the "

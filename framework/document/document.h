@@ -49,8 +49,12 @@ std::string_view kind_name(Node::Kind kind);
 inline constexpr int kMaxDocumentDepth = 64;
 inline constexpr std::uintmax_t kMaxDocumentBytes = 1024 * 1024;
 
+/// What becomes of a key that an object has twice: a fault, or the last value counts and a warning is given.
+enum class SameKeys { refuse, keep_last };
+
 /// nullopt after a syntax fault, which is the one error reported then.
-std::optional<Node> parse_document(std::string_view text, const std::string& file, Diagnostics& diagnostics);
+std::optional<Node> parse_document(std::string_view text, const std::string& file, Diagnostics& diagnostics,
+                                   SameKeys same_keys = SameKeys::refuse);
 
 /// Reads and parses a regular file of at most kMaxDocumentBytes.
 std::optional<Node> read_document(const std::filesystem::path& path, Diagnostics& diagnostics);

@@ -11,7 +11,7 @@
 #include "framework/base/error.h"
 #include "framework/document/glsl_text.h"
 #include "framework/effect/glsl_tokens.h"
-#include "framework/effect/isf/isf_text.h"
+#include "framework/effect/isf/isf_vocabulary.h"
 #include "framework/effect/usage_check.h"
 
 namespace aftershade {
@@ -38,6 +38,12 @@ Place author_place(const ShaderSource& source, const gpu::ShaderMessage& message
             if (token.text == "isf_main" && is_isf_shader(*token.file)) return token.place();
     if (message.line < 1 || message.line > int(source.lines.size())) return named_place(source, message.text);
     const SourceLine& line = source.lines[std::size_t(message.line) - 1];
+    // What an ISF file leaves open is found in the host's text behind it.
+    if (line.file.text().ends_with("isf/fragment_main.glsl") ||
+        line.file.text().ends_with("isf/vertex_main.glsl"))
+        for (std::size_t before = std::size_t(message.line) - 1; before > 0; --before)
+            if (const SourceLine& last = source.lines[before - 1]; is_isf_shader(last.file.text()))
+                return {last.file.text(), last.line, 1};
     return {line.file.text(), line.line, message.column};
 }
 

@@ -3,7 +3,13 @@
 
 vec4 isf_data[1] = vec4[](vec4(0.0));
 vec4 isf_FragCoord = vec4(gl_FragCoord.x, ISF_SIZE.y - gl_FragCoord.y, gl_FragCoord.zw);
+#ifdef ISF_MOVED
+in vec2 isf_norm;
+vec2 isf_FragNormCoord = isf_norm;
+#else
 vec2 isf_FragNormCoord = isf_FragCoord.xy / ISF_SIZE;
+#endif
+bool isf_is_gone = false;
 // What an output of the file's own holds.
 vec4 isf_color(vec4 color) { return color; }
 vec4 isf_color(vec3 color) { return vec4(color, 1.0); }

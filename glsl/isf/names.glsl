@@ -8,6 +8,7 @@
 #define sampler2DRect sampler2D
 #define texture isf_sample
 #define texture2D isf_sample
+#define textureCube isf_sample
 #define texture2DRect isf_sample_pixel
 #define texture2DLod isf_sample_level
 #define texture2DLodEXT isf_sample_level

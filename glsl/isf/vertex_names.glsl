@@ -7,6 +7,6 @@
 #define vv_vertShaderInit isf_vertShaderInit
 // Of GLSL 1.20's own pipeline, whose quad is the picture.
 #define gl_Vertex isf_vertex()
-#define gl_MultiTexCoord0 vec4(isf_norm, 0.0, 1.0)
+#define gl_MultiTexCoord0 vec4(isf_corner, 0.0, 1.0)
 #define gl_ModelViewProjectionMatrix mat4(1.0)
 #define ftransform() isf_vertex()

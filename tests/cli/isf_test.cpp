@@ -138,6 +138,7 @@ TEST_F(IsfFiles, TellFaultsOfTheirShadersWithTheLine) {
     const std::vector<Fault> faults = {
         {"void main() {\n gl_FragColor = vec4(1.0)\n}\n", 6, "syntax error"},
         {"void main() {\n gl_FragColor = blur(1.0);\n}\n", 5, "blur"},
+        {"void main() {\n gl_FragColor = vec4(1.0);\n", 5, "syntax error"},
         {"void main() {\n gl_FragColor = vec3(1.0);\n}\n", 5, "vec3"},
         {"void main() {\n gl_FragColor = IMG_THIS_PIXEL(other);\n}\n", 5, "other"},
         {"void main() {\n gl_FragColor = vec4(amount);\n}\n", 5, "amount"},

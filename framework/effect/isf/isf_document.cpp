@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "framework/base/text.h"
 #include "framework/document/units.h"
 #include "framework/effect/isf/isf_formula.h"
+#include "framework/effect/isf/isf_vocabulary.h"
 
 namespace aftershade {
 
@@ -47,8 +49,8 @@ public:
 
     void read(const Node& document) {
         file_.place = document.place;
-        file_.summary = in_a_line(text(document, "DESCRIPTION"));
-        file_.credit = in_a_line(text(document, "CREDIT"));
+        file_.summary = words(document, "DESCRIPTION");
+        file_.credit = words(document, "CREDIT");
         each(document, "INPUTS", kMaxIsfInputs, [&](const Node& node) { input(node); });
         imports(document);
         each(document, "PASSES", kMaxIsfPasses, [&](const Node& node) { pass(node); });
@@ -71,6 +73,15 @@ private:
             fault(node->place,
                   std::string(key) + " is " + std::string(kind_name(node->kind)) + ", but a text is needed");
         return node->string;
+    }
+
+    /// What people read, of any kind: no picture depends on it.
+    static std::string words(const Node& object, const char* key) {
+        const Node* node = object.find(key);
+        if (!node) return "";
+        std::string all = node->is_number() ? format_number(node->number) : node->string;
+        for (const Node& item : node->items) all += (all.empty() ? "" : ", ") + item.string;
+        return in_a_line(all);
     }
 
     /// Hosts write true, 1, 1.0 and "YES".
@@ -116,9 +127,12 @@ private:
                       "', which is not a name of GLSL: letters, 0-9 and _, not beginning with a digit");
             return false;
         }
-        static const std::set<std::string> kOfIsf = {"TIME",       "TIMEDELTA", "DATE",
-                                                     "FRAMEINDEX", "PASSINDEX", "RENDERSIZE"};
-        if (kOfIsf.contains(name) || name.starts_with("isf_") || name.starts_with("IMG_")) {
+        if (isf_words::is_old_word(name)) {
+            fault(place, thing + " is called '" + name + "', which is a word of GLSL itself; choose another");
+            return false;
+        }
+        if (isf_words::kOfIsf.contains(name) || isf_words::kAliases.contains(name) ||
+            name == "isf_vertShaderInit" || name.starts_with("IMG_")) {
             fault(place, thing + " is called '" + name + "', which is a name of ISF itself; choose another");
             return false;
         }
@@ -136,8 +150,9 @@ private:
         if (!node.find("NAME") || !node.find("TYPE"))
             return fault(node.place, "an input needs a NAME and a TYPE");
         input.name = text(node, "NAME");
-        input.label = in_a_line(text(node, "LABEL"));
-        const auto known = input_types().find(type);
+        input.label = words(node, "LABEL");
+        const auto known = std::ranges::find_if(
+            input_types(), [&](const auto& entry) { return lower_case(entry.first) == lower_case(type); });
         if (known == input_types().end()) {
             std::vector<std::string> names;
             for (const auto& [name, value] : input_types()) names.push_back(name);
@@ -170,7 +185,14 @@ private:
         for (const Node* list : {values, labels})
             if (list && !list->is_array())
                 return fault(list->place, "VALUES and LABELS of '" + input.name + "' are lists");
-        if (!values) return;
+        if (!values) {
+            // Labels alone are numbered.
+            for (std::size_t i = 0; labels && i < labels->items.size(); ++i) {
+                input.values.push_back(int(i));
+                input.labels.push_back(labels->items[i].string);
+            }
+            return;
+        }
         for (std::size_t i = 0; i < values->items.size(); ++i) {
             const Node item = as_number(values->items[i]);
             if (!item.is_number() || std::abs(item.number) > 1e9 || item.number != std::floor(item.number))
@@ -204,25 +226,31 @@ private:
         if (!node || node->kind == Node::Kind::null || input.type == Type::image || input.type == Type::audio)
             return std::nullopt;
         const std::string label = std::string(key) + " of '" + input.name + "' is ";
+        // Limits that hosts cannot read they leave out.
+        const auto wrong = [&](const std::string& what) -> std::optional<Node> {
+            if (std::string_view(key) == "DEFAULT") fault(node->place, label + what);
+            else diagnostics_.warning(node->place, label + what + ", and is left out");
+            return std::nullopt;
+        };
         Node value = as_number(*node);
         if (input.type == Type::boolean || input.type == Type::event) {
             const auto is_true = truth(*node);
-            if (!is_true || node->is_array() || node->is_object()) {
-                fault(node->place, label + "neither true nor false");
-                return std::nullopt;
-            }
+            if (!is_true || node->is_array() || node->is_object()) return wrong("neither true nor false");
             value.kind = Node::Kind::boolean;
             value.boolean = *is_true;
             return value;
         }
         const std::size_t size = components_of(input.type);
         if (size == 1) {
+            const auto named = std::ranges::find(input.labels, node->string);
             if (node->kind == Node::Kind::boolean) value.number = node->boolean;
-            else if (!value.is_number()) {
-                fault(node->place, label + std::string(kind_name(node->kind)) + ", but a number is needed");
-                return std::nullopt;
-            }
+            else if (!value.is_number() && node->is_string() && named != input.labels.end())
+                value.number = input.values[std::size_t(named - input.labels.begin())];
+            else if (!value.is_number())
+                return wrong(std::string(kind_name(node->kind)) + ", but a number is needed");
             value.kind = Node::Kind::number;
+            if (input.type == Type::choice && !(std::abs(value.number) <= INT32_MAX))
+                return wrong(format_number(value.number) + ", which does not fit 32 bits");
             if (input.type == Type::choice && value.number != std::trunc(value.number))
                 diagnostics_.warning(node->place,
                                      label + format_number(value.number) + ", of which a long takes " +
@@ -233,31 +261,29 @@ private:
         // A colour may leave out its alpha, and hosts write one number for the limit of all.
         if (node->is_number()) value.items.assign(size, *node);
         value.kind = Node::Kind::array;
+        for (Node& item : value.items) item = as_number(item);
+        if (value.items.size() > size) value.items.resize(size);
         if (size == 4 && value.items.size() == 3) {
             value.items.push_back(value.items.back());
             value.items.back().kind = Node::Kind::number;
             value.items.back().number = 1;
         }
-        if (value.items.size() != size || !std::ranges::all_of(value.items, is_number)) {
-            fault(node->place, label + "not a list of " + std::to_string(size) + " numbers");
-            return std::nullopt;
-        }
+        if (value.items.size() != size || !std::ranges::all_of(value.items, is_number))
+            return wrong("not a list of " + std::to_string(size) + " numbers");
         return value;
     }
 
-    /// {"name": {"PATH": "x.png"}}; in ISF 1 [{"NAME": "name", "PATH": "x.png"}].
+    /// {"name": {"PATH": "x.png"}}, with six paths a cube map; in ISF 1 [{"NAME": "name", "PATH": "x.png"}].
     void imports(const Node& document) {
         const Node* node = document.find("IMPORTED");
         if (!node || node->kind == Node::Kind::null) return;
         const auto add = [&](const std::string& name, const Place& place, const Node& import) {
             const Node* path = import.is_object() ? import.find("PATH") : nullptr;
-            if (path && path->is_array())
-                return fault(path->place, "the import '" + name +
-                                              "' is a cube map, which Aftershade does not have (import one "
-                                              "picture)");
+            if (path && path->is_array()) return cube(name, place, *path);
             if (!path || !path->is_string() || path->string.empty())
                 return fault(place, "the import '" + name + "' has no PATH");
-            if (claim(name, "an import", place)) file_.imports.push_back({name, path->string, path->place});
+            if (claim(name, "an import", place))
+                file_.imports.push_back({name, path->string, name, path->place});
         };
         if (node->is_object())
             for (const Member& member : node->members) add(member.key, member.key_place, member.value);
@@ -267,17 +293,36 @@ private:
         else fault(node->place, "IMPORTED is an object of pictures by name");
     }
 
+    void cube(const std::string& name, const Place& place, const Node& paths) {
+        const bool are_paths = std::ranges::all_of(
+            paths.items, [](const Node& path) { return path.is_string() && !path.string.empty(); });
+        if (paths.items.size() != std::size_t(kCubeFaces) || !are_paths)
+            return fault(paths.place, "PATH of the import '" + name +
+                                          "' is a list, but a cube map has 6 paths: +x, -x, +y, -y, +z, -z");
+        if (!claim(name, "an import", place)) return;
+        file_.cubes.push_back(name);
+        for (int face = 0; face < kCubeFaces; ++face) {
+            const Node& path = paths.items[std::size_t(face)];
+            file_.imports.push_back(
+                {name_of_face(name, face), path.string, name + "_" + std::to_string(face), path.place});
+        }
+    }
+
     void pass(const Node& node) {
         IsfPass pass;
         pass.place = node.place;
         pass.target = text(node, "TARGET");
         pass.is_persistent = flag(node, "PERSISTENT");
         pass.is_float = flag(node, "FLOAT");
-        pass.doc = in_a_line(text(node, "DESCRIPTION"));
+        pass.doc = words(node, "DESCRIPTION");
         sides(node, pass);
-        const auto same = [&](const IsfPass& other) { return other.target == pass.target; };
-        const bool is_known = std::ranges::any_of(file_.passes, same);
-        if (!pass.target.empty() && !is_known) claim(pass.target, "a TARGET", node.find("TARGET")->place);
+        const auto first = std::ranges::find(file_.passes, pass.target, &IsfPass::target);
+        if (pass.target.empty()) {
+        } else if (first == file_.passes.end()) {
+            claim(pass.target, "a TARGET", node.find("TARGET")->place);
+        } else if (pass.side[0].empty() && pass.side[1].empty()) {
+            std::ranges::copy(first->side, pass.side);
+        }
         file_.passes.push_back(std::move(pass));
     }
 
@@ -291,7 +336,8 @@ private:
                                        ", but a number or a formula is needed");
                 continue;
             }
-            pass.side[axis] = side->is_number() ? format_number(side->number) : side->string;
+            pass.side[axis] =
+                side->is_number() ? format_number(side->number) : std::string(trimmed(side->string));
             pass.side_place[axis] = side->place;
         }
     }

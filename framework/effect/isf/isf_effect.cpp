@@ -55,7 +55,7 @@ public:
         author_text(file_.path.filename().string(), file_.written_text, texts_.fragment());
         effect_.shaders[id_ + ".frag"] = shaders.text("fragment", file_.path.filename().string());
         if (has_vertex()) {
-            author_text(file_.vertex_file, file_.vertex_text, texts_.vertex());
+            author_text(file_.vertex_file, file_.written_vertex_text, texts_.vertex());
             effect_.shaders[id_ + ".vert"] = shaders.text("vertex", file_.vertex_file);
         }
         return std::move(effect_);
@@ -205,6 +205,12 @@ private:
             // Nothing can read what a later pass draws over.
             if (pass.target.empty() && !is_last) continue;
             const std::string texture = texture_name(i);
+            // Corners that the file places leave the rest 0.
+            if (texts_.moves_corners())
+                passes_.push_back(object({{"name", text("clear_" + std::to_string(i))},
+                                          {"kind", text("clear")},
+                                          {"writes", list_node(pass.place, {text(texture)})},
+                                          {"value", number_node(pass.place, 0)}}));
             passes_.push_back(pass_of(pass, int(i), texture, written));
             written[pass.target] = texture;
         }
@@ -266,7 +272,7 @@ private:
             reads.push_back(is_exact && !is_pixel ? text(name) : read(name, is_pixel ? "pixel" : "linear"));
             const std::string sampler = name.ends_with(".prev") ? image.name + "_prev" : name;
             add_member(defines, "ISF_IMAGE_" + std::to_string(i), text(sampler));
-            if (!texts_.name_here(image.isf_name).empty() && is_alike(pass, image))
+            if (!texts_.name_here(image.isf_name).empty() && is_alike(pass, image) && !texts_.moves_corners())
                 add_member(defines, "ISF_HERE_" + std::to_string(i), text("1"));
         }
         if (lacks_any) {
@@ -287,7 +293,7 @@ private:
         add_member(node, "instances",
                    object({{"of", text("quads")},
                            {"count", number_node(pass.place, 1)},
-                           {"covers", bool_node(pass.place, true)}}));
+                           {"covers", bool_node(pass.place, !texts_.moves_corners())}}));
         return node;
     }
 

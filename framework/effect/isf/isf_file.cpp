@@ -1,6 +1,8 @@
 #include "framework/effect/isf/isf_file.h"
 
 #include <algorithm>
+#include <cctype>
+#include <set>
 #include <utility>
 
 #include "framework/base/atomic_file.h"
@@ -9,6 +11,7 @@
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/isf/isf_document.h"
 #include "framework/effect/isf/isf_text.h"
+#include "framework/effect/manifest/manifest_check.h"
 #include "framework/effect/shader_source.h"
 
 namespace aftershade {
@@ -19,7 +22,13 @@ namespace {
 
 /// The first comment that begins with a brace: the bytes between its ends. npos: there is none.
 std::pair<std::size_t, std::size_t> find_json(const std::string& text) {
-    for (std::size_t at = 0; (at = text.find("/*", at)) != std::string::npos;) {
+    for (std::size_t at = 0; (at = text.find('/', at)) != std::string::npos;) {
+        if (text.compare(at, 2, "//") == 0) at = text.find('\n', at);
+        if (at == std::string::npos) break;
+        if (text.compare(at, 2, "/*") != 0) {
+            ++at;
+            continue;
+        }
         const std::size_t begin = at + 2, end = text.find("*/", begin);
         if (const std::size_t first = text.find_first_not_of(" \t\r\n", begin);
             first != std::string::npos && text[first] == '{')
@@ -30,11 +39,33 @@ std::pair<std::size_t, std::size_t> find_json(const std::string& text) {
     return {std::string::npos, std::string::npos};
 }
 
-/// Lone carriage returns end lines, too, and what is not UTF-8 may stand in comments.
+/// Lone carriage returns end lines, too, and a byte order mark is a blank wherever it stands.
 std::string as_document(std::string text) {
+    for (std::size_t at = 0; (at = text.find("\xEF\xBB\xBF", at)) != std::string::npos;)
+        text.replace(at, 3, 3, ' ');
     for (std::size_t i = 0; i < text.size(); ++i)
         if (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n')) text[i] = '\n';
     return text;
+}
+
+/// Hosts take a comma before a closing bracket. A blank in its place keeps the columns.
+void blank_last_commas(std::string& json) {
+    std::size_t comma = std::string::npos;
+    bool is_in_text = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (is_in_text) {
+            if (c == '\\') ++i;
+            is_in_text = c != '"';
+            continue;
+        }
+        if (json.compare(i, 2, "//") == 0) i = std::min(json.find('\n', i), json.size());
+        else if (!std::isspace(static_cast<unsigned char>(c))) {
+            if ((c == ']' || c == '}') && comma != std::string::npos) json[comma] = ' ';
+            comma = c == ',' ? i : std::string::npos;
+            is_in_text = c == '"';
+        }
+    }
 }
 
 ShaderSource source_of(const std::string& text, const std::string& path) {
@@ -44,19 +75,27 @@ ShaderSource source_of(const std::string& text, const std::string& path) {
     return source;
 }
 
-/// What only a vertex shader can fill: "varying vec2 at;", in later GLSL "in vec2 at;".
+/// What only a vertex shader can fill: "varying vec2 at;", in later GLSL "in vec2 at;". One that nothing
+/// reads needs no value.
 std::optional<Place> place_of_varying(const IsfFile& file) {
     const ShaderSource source = source_of(file.text, file.path.string());
     const std::vector<Token> tokens = glsl_tokens(source);
+    std::vector<const Token*> declared;
+    std::set<std::string_view> read;
     int depth = 0;
     for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
         const std::string_view token = tokens[i].text;
         if (token == "(" || token == "{") ++depth;
         if (token == ")" || token == "}") --depth;
         const bool is_varying = token == "varying" || (token == "in" && depth == 0);
-        if (is_varying && tokens[i + 2].is_word() && !IsfTexts::is_of_isf(tokens[i + 2].text))
-            return tokens[i].place();
+        if (!is_varying) read.insert(token);
+        else
+            for (++i; i < tokens.size() && tokens[i].text != ";"; ++i) declared.push_back(&tokens[i]);
     }
+    for (const Token* token : declared)
+        if (token->is_word() && read.contains(token->text) && !IsfTexts::is_of_isf(token->text) &&
+            !is_glsl_word(std::string(token->text)))
+            return token->place();
     return std::nullopt;
 }
 
@@ -88,6 +127,17 @@ void check_main(const std::string& file, const Place& begin, Diagnostics& diagno
     else diagnostics.error(begin, "the shader has no main()");
 }
 
+/// Pictures from elsewhere are the manifest's fault.
+void check_import(const IsfImport& import, const fs::path& folder, Diagnostics& diagnostics) {
+    const fs::path picture(import.path);
+    const bool is_elsewhere = picture.is_absolute() || *picture.lexically_normal().begin() == "..";
+    std::error_code failure;
+    if (!is_elsewhere && !fs::exists(folder / picture, failure))
+        diagnostics.error(import.place, "the import '" + import.label + "' names '" +
+                                            import.path.substr(0, 200) +
+                                            "', which is not beside the file (copy it there)");
+}
+
 /// The file's name with .vs; "": there is none.
 fs::path vertex_path(fs::path path) {
     std::error_code failure;
@@ -108,6 +158,10 @@ std::optional<IsfFile> parse_isf(const fs::path& path, std::string text, Diagnos
     const auto line_at = [&](std::size_t at) {
         return 1 + int(std::count(file.text.begin(), file.text.begin() + std::ptrdiff_t(at), '\n'));
     };
+    if (const std::size_t nul = file.text.find('\0'); nul != std::string::npos) {
+        diagnostics.error({path.string(), line_at(nul), 1}, "a NUL byte: an ISF file is text");
+        return std::nullopt;
+    }
     if (begin == std::string::npos || end == std::string::npos) {
         diagnostics.error(
             {path.string(), begin == std::string::npos ? 1 : line_at(begin), 1},
@@ -118,10 +172,13 @@ std::optional<IsfFile> parse_isf(const fs::path& path, std::string text, Diagnos
         return std::nullopt;
     }
     // Blanks in the place of what is before keep its lines and columns; hosts take tabs within texts.
-    std::string blanked = printable_lines(std::string_view(file.text).substr(0, end));
+    std::string blanked = file.text.substr(0, end);
+    std::ranges::replace(blanked, '\r', ' ');
+    blanked = printable_lines(blanked);
     for (std::size_t i = 0; i < blanked.size(); ++i)
         if (blanked[i] == '\t' || (i < begin && blanked[i] != '\n')) blanked[i] = ' ';
-    if (const auto document = parse_document(blanked, path.string(), diagnostics)) {
+    blank_last_commas(blanked);
+    if (const auto document = parse_document(blanked, path.string(), diagnostics, SameKeys::keep_last)) {
         read_isf_document(*document, file, diagnostics);
         check_main(file.text, {path.string(), line_at(end), 1}, diagnostics);
     }
@@ -149,6 +206,9 @@ std::optional<IsfFile> read_isf(const fs::path& path, Diagnostics& diagnostics) 
     auto text = read(path);
     auto file = text ? parse_isf(path, std::move(*text), diagnostics) : std::nullopt;
     if (!file) return std::nullopt;
+    const int errors_before = diagnostics.error_count();
+    for (const IsfImport& import : file->imports) check_import(import, path.parent_path(), diagnostics);
+    if (diagnostics.error_count() > errors_before) return std::nullopt;
     const fs::path vertex = vertex_path(path);
     if (vertex.empty()) {
         if (const auto varying = place_of_varying(*file)) {
@@ -162,8 +222,8 @@ std::optional<IsfFile> read_isf(const fs::path& path, Diagnostics& diagnostics) 
     auto vertex_text = read(vertex);
     if (!vertex_text) return std::nullopt;
     file->vertex_file = vertex.filename().string();
-    file->vertex_text = std::move(*vertex_text);
-    const int errors_before = diagnostics.error_count();
+    file->vertex_text = as_document(*vertex_text);
+    file->written_vertex_text = std::move(*vertex_text);
     check_main(file->vertex_text, {vertex.string(), 1, 1}, diagnostics);
     if (diagnostics.error_count() > errors_before) return std::nullopt;
     return file;

@@ -53,15 +53,17 @@ IsfNames::IsfNames(const IsfFile& file, const IsfWords& words) : words_(words) {
         names_[input.name] = unique(snake_case(input.name), is_global, input.name);
     }
     for (const IsfImport& import : file.imports)
-        names_[import.name] = unique(snake_case(import.name), true, import.name);
+        names_[import.name] = unique(snake_case(import.label), true, import.name);
     for (const IsfPass& pass : file.passes)
         if (!pass.target.empty() && !names_.contains(pass.target))
             names_[pass.target] = unique(snake_case(pass.target), true, pass.target);
 }
 
 std::string IsfNames::unique(const std::string& wanted, bool is_global, const std::string& isf_name) {
+    const bool is_of_host = is_global && (wanted == "isf" || wanted.starts_with("isf_"));
+    const std::string base = (is_of_host ? "own_" : "") + wanted;
     for (int number = 1;; ++number) {
-        std::string name = number == 1 ? wanted : wanted + "_" + std::to_string(number);
+        std::string name = number == 1 ? base : base + "_" + std::to_string(number);
         if (is_glsl_word(name) || (is_global && hides_glsl(name))) continue;
         // The file's own words must not meet a sampler of ours; its image may have the name itself.
         const auto is_free = [&](const std::string& other) {

@@ -145,7 +145,7 @@ Node param_of_import(const IsfImport& import) {
                                       {"space", text("data")},
                                       {"filter", text("linear")},
                                       {"default", text(import.path)},
-                                      {"doc", text(import.name + ": a picture of the filter's own.")}});
+                                      {"doc", text(import.label + ": a picture of the filter's own.")}});
 }
 
 std::string global_of_input(const IsfFile& file, const IsfInput& input, const std::string& param,

@@ -8,7 +8,10 @@
 namespace aftershade {
 
 std::string IsfShaders::text(const std::string& stage, const std::string& file_name) const {
-    std::string shader = "#version 450 core\n#include <pass>\n#include <isf/" + stage + ".glsl>\n";
+    std::string shader = "#version 450 core\n#include <pass>\n";
+    if (texts.moves_corners()) shader += "#define ISF_MOVED\n";
+    shader += "#include <isf/" + stage + ".glsl>\n";
+    if (!file.cubes.empty()) shader += "#include <isf/cube.glsl>\n";
     for (const IsfInput& input : file.inputs)
         shader += global_of_input(file, input, names.of(input.name), texts.name(input.name));
     shader += "#include <isf/" + stage + "_names.glsl>\n";
@@ -16,9 +19,17 @@ std::string IsfShaders::text(const std::string& stage, const std::string& file_n
         shader += image_names(images[i], i);
         if (stage == "fragment") shader += texel(images[i], i);
     }
-    if (const std::string output = texts.output(); stage == "fragment")
-        shader +=
-            "#define ISF_COLOR " + (output.empty() ? "isf_data[0]" : "isf_color(" + output + ")") + "\n";
+    for (const std::string& cube : file.cubes) {
+        shader += "#define " + texts.name(cube);
+        for (int face = 0; face < kCubeFaces; ++face)
+            shader += (face == 0 ? " " : ", ") + texts.name(name_of_face(cube, face));
+        shader += "\n";
+    }
+    if (const std::string output = texts.output(); stage == "fragment") {
+        const std::string color = output.empty() ? "isf_data[0]" : "isf_color(" + output + ")";
+        shader += "#define ISF_COLOR " +
+                  (texts.discards() ? "(isf_is_gone ? vec4(0.0) : " + color + ")" : color) + "\n";
+    }
     // Where no file has these words, the host may put loads from images in the place of fetches, and
     // knows that a shader sees its own pixel alone.
     if (words.all.contains("texelFetch")) shader += "#define texelFetch isf_fetch\n";

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -25,8 +24,11 @@ public:
         tokens_ = glsl_tokens(source_);
         mark_directives();
         mark_members();
+        int depth = 0;
         for (std::size_t i = 0; i < tokens_.size(); ++i) {
             const std::string_view word = tokens_[i].text;
+            depth += word == "{" || word == "(" ? 1 : word == "}" || word == ")" ? -1 : 0;
+            if (depth == 0 && is_type(i)) (at(i + 1) == "(" ? global_functions_ : globals_).emplace(word);
             if (is_declared(i)) declared_.emplace(word);
             if (kSampling.contains(word) && !file_.macros_.contains(std::string(word)) && !directive_[i] &&
                 at(i + 1) != "(")
@@ -44,6 +46,14 @@ public:
         return false;
     }
     const std::string& output() const { return output_; }
+    bool has(std::string_view word) const {
+        return std::ranges::any_of(tokens_, [&](const Token& token) { return token.text == word; });
+    }
+    bool sets_coordinates() const {
+        for (std::size_t i = 0; i < tokens_.size(); ++i)
+            if (tokens_[i].text.ends_with("_FragNormCoord") && is_set(i)) return true;
+        return false;
+    }
     bool is_read_by_pixel(const std::string& name) const {
         for (std::size_t i = 0; i < tokens_.size(); ++i)
             if (is_of(tokens_[i].text, name) && !(tokens_[i].text == name && is_read_here(i))) return false;
@@ -53,9 +63,12 @@ public:
     std::string text() {
         for (std::size_t i = 0; i < tokens_.size(); ++i)
             if (tokens_[i].text == "main") edits_.push_back({offset(i), 0, "isf_"});  // for ours around it
+            else if (is_fragment_ && tokens_[i].text == "discard")
+                edits_.push_back({offset(i), tokens_[i].text.size(), "isf_is_gone = true"});
             else if (is_fragment_ && file_.read_here_.contains(std::string(tokens_[i].text)) &&
                      is_read_here(i))
                 edits_.push_back({offset(i), 0, std::string(kHere)});
+            else if (is_called_like_a_variable(i)) edits_.push_back({offset(i), 0, std::string(kCall)});
             else if (tokens_[i].is_word() && is_renamed(i))
                 edits_.push_back({offset(i), 0, std::string(kOwn)});
         std::ranges::sort(edits_, {}, &Edit::at);
@@ -74,6 +87,18 @@ private:
     bool is_read_here(std::size_t i) const {
         return i > 1 && before(i) == "(" && at(i + 1) == ")" &&
                (tokens_[i - 2].text == "IMG_THIS_PIXEL" || tokens_[i - 2].text == "IMG_THIS_NORM_PIXEL");
+    }
+
+    /// name = ..., name.x *= ..., name[0] += ...
+    bool is_set(std::size_t i) const {
+        std::size_t next = i + 1;
+        if (at(next) == ".") next += 2;
+        else if (at(next) == "[")
+            while (next < tokens_.size() && at(next++) != "]") {
+            }
+        static const Words kBefore = {"+", "-", "*", "/"};
+        return (at(next) == "=" && at(next + 1) != "=") ||
+               (kBefore.contains(at(next)) && at(next + 1) == "=");
     }
 
     struct Edit {
@@ -140,6 +165,13 @@ private:
         return false;
     }
 
+    /// Older GLSL keeps functions apart from variables.
+    bool is_called_like_a_variable(std::size_t i) const {
+        const std::string_view word = tokens_[i].text;
+        return at(i + 1) == "(" && global_functions_.contains(word) &&
+               (globals_.contains(word) || file_.own_things_.contains(std::string(word)));
+    }
+
     bool is_renamed(std::size_t i) const {
         const std::string_view word = tokens_[i].text;
         const bool is_called = at(i + 1) == "(";
@@ -148,7 +180,9 @@ private:
             return !is_swizzle(word) || (before(i) != "." && !member_[i]);
         }
         if (is_keyword(word)) return !is_keyword_use(i);
-        if (is_host_name(word)) return true;
+        if (is_host_name(word))
+            return !kAliases.contains(word) || globals_.contains(word) || global_functions_.contains(word) ||
+                   file_.macros_.contains(std::string(word));
         if (functions_.contains(word)) return is_called;
         return variables_.contains(word) && !is_called;
     }
@@ -176,8 +210,25 @@ private:
         }
     }
 
+    /// Some hosts take a constant that is made of what a frame sets.
+    void constant(std::size_t begin, std::size_t end) {
+        const auto is_live = [&](std::size_t i) {
+            const std::string word(tokens_[i].text);
+            return before(i) != "." && word != "PASSINDEX" &&
+                   (kOfIsf.contains(word) || word == "gl_FragCoord" || file_.things_.contains(word) ||
+                    live_.contains(word));
+        };
+        std::size_t i = begin;
+        while (i < end && !is_live(i)) ++i;
+        if (i == end) return;
+        blank(begin, begin);
+        for (i = begin; i < end; ++i)
+            if (at(i + 1) == "=" && at(i + 2) != "=") live_.emplace(tokens_[i].text);
+    }
+
     /// `end`: of its semicolon.
     void statement(std::size_t begin, std::size_t end) {
+        if (at(begin) == "const") return constant(begin, end);
         std::size_t i = begin;
         if (at(i) == "layout")
             while (i < end && at(i++) != ")") {
@@ -243,6 +294,7 @@ private:
     std::vector<Token> tokens_;
     std::vector<bool> directive_, member_;  // of each token
     Words declared_, variables_, functions_;
+    Words globals_, global_functions_, live_;  // live_: constants that a frame sets
     std::vector<Edit> edits_;
     std::size_t out_ = 0;
     std::string output_;
@@ -258,6 +310,7 @@ IsfTexts::IsfTexts(const IsfFile& file) : file_(file), macros_(IsfWords(file).ma
     for (const IsfInput& input : file.inputs)
         add(input.name, input.type == IsfInput::Type::image || input.type == IsfInput::Type::audio);
     for (const IsfImport& import : file.imports) add(import.name, true);
+    for (const std::string& cube : file.cubes) add(cube, true);
     for (const IsfPass& pass : file.passes) add(pass.target, true);
     for (const auto& [text, is_fragment] : {std::pair(&file.text, true), {&file.vertex_text, false}}) {
         const IsfRewriter rewriter(*this, *text, is_fragment);
@@ -276,6 +329,15 @@ IsfTexts::IsfTexts(const IsfFile& file) : file_(file), macros_(IsfWords(file).ma
 
 bool IsfTexts::is_renamed(const std::string& word) const {
     return own_things_.contains(word) || is_keyword(word) || is_host_name(word);
+}
+
+bool IsfTexts::moves_corners() const {
+    const IsfRewriter vertex(*this, file_.vertex_text, false);
+    return vertex.has("gl_Position") || vertex.sets_coordinates();
+}
+
+bool IsfTexts::discards() const {
+    return IsfRewriter(*this, file_.text, true).has("discard");
 }
 
 bool IsfTexts::is_of_isf(std::string_view word) {
@@ -304,35 +366,6 @@ bool IsfTexts::redefines_pixels() const {
 
 std::string IsfTexts::output() const {
     return IsfRewriter(*this, file_.text, true).output();
-}
-
-std::string with_isf_names(const std::string& message) {
-    static const std::map<std::string, std::string, std::less<>> kNames = {
-        {"isf_main", "main"},
-        {"isf_sample", "texture2D"},
-        {"isf_data", "gl_FragData"},
-        {"isf_sample_here", "IMG_THIS_PIXEL"},
-        {"isf_FragCoord", "gl_FragCoord"},
-        {"isf_sample_pixel", "IMG_PIXEL"},
-        {"isf_size", "IMG_SIZE"}};
-    std::string text;
-    for (std::size_t i = 0; i < message.size();) {
-        std::size_t end = i;
-        while (end < message.size() &&
-               (std::isalnum(static_cast<unsigned char>(message[end])) || message[end] == '_'))
-            ++end;
-        std::string_view word = std::string_view(message).substr(i, end - i);
-        if (word.empty()) {
-            text += message[i++];
-            continue;
-        }
-        for (const std::string_view prefix : {kOwn, kHere})
-            if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
-        const auto known = kNames.find(word);
-        text += known == kNames.end() ? word : std::string_view(known->second);
-        i = end;
-    }
-    return text;
 }
 
 }  // namespace aftershade

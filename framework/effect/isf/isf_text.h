@@ -28,6 +28,11 @@ public:
     /// The fragment shader's own output as an expression; "": it writes gl_FragColor.
     std::string output() const;
 
+    /// Whether the vertex shader places its corners, or gives them other coordinates, itself.
+    bool moves_corners() const;
+    /// Whether the fragment shader leaves pixels out, which are 0 then.
+    bool discards() const;
+
     /// Whether the word stands in the texts behind a prefix.
     bool is_renamed(const std::string& word) const;
     /// A variable that ISF has in its shaders: RENDERSIZE.
@@ -44,8 +49,5 @@ private:
     std::set<std::string> read_here_;  // images by IMG_THIS_PIXEL(), among other ways
     std::set<std::string> macros_;
 };
-
-/// A driver's message with the names that the author wrote.
-std::string with_isf_names(const std::string& message);
 
 }  // namespace aftershade

@@ -41,20 +41,28 @@ struct IsfPass {
 /// A picture beside the file.
 struct IsfImport {
     std::string name, path;
+    std::string label;  ///< what people read
     Place place;
 };
+
+inline constexpr int kCubeFaces = 6;
+/// The import that holds a face of a cube map: +x, -x, +y, -y, +z, -z.
+inline std::string name_of_face(const std::string& cube, int face) {
+    return "isf_face_" + std::to_string(face) + "_" + cube;
+}
 
 struct IsfFile {
     std::filesystem::path path;
     std::string text;          ///< of the file, which is the fragment shader
     std::string written_text;  ///< the same, byte for byte
     std::string vertex_file;   ///< beside it: the same name with .vs; "" for none
-    std::string vertex_text;
+    std::string vertex_text, written_vertex_text;
     std::string summary, credit;
     std::vector<IsfInput> inputs;
     std::vector<IsfPass> passes;  ///< at least one; the last one's is the picture
     std::vector<IsfImport> imports;
-    Place place;  ///< of the JSON
+    std::vector<std::string> cubes;  ///< maps whose faces are imports
+    Place place;                     ///< of the JSON
 };
 
 inline constexpr std::size_t kMaxIsfPasses = 64;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <initializer_list>
+#include <map>
 
 #include "framework/effect/manifest/manifest_check.h"
 
@@ -34,13 +36,17 @@ const Words kQualifiers = {"smooth",  "flat",     "noperspective", "sample",   "
                            "buffer",  "shared",   "coherent",      "volatile", "restrict",  "readonly",
                            "lowp",    "mediump",  "highp",         "layout",   "writeonly", "subroutine",
                            "uniform", "centroid", "invariant"};
-const Words kSampling = {"texture",          "texture2D",         "texture2DRect",
-                         "texture2DLod",     "textureLod",        "texture2DLodEXT",
-                         "texture2DProj",    "textureProj",       "texelFetch",
-                         "texture2DProjLod", "texture2DRectProj", "texture2DGrad",
-                         "texture2DGradARB", "textureProjLod",    "textureProjGrad",
-                         "textureGrad",      "textureOffset",     "textureLodOffset",
-                         "texelFetchOffset", "textureGather",     "dFdy",
+const Words kSampling = {"texture",          "texture2D",
+                         "texture2DRect",    "textureCube",
+                         "texture2DLod",     "textureLod",
+                         "texture2DLodEXT",  "texture2DProj",
+                         "textureProj",      "texelFetch",
+                         "texture2DProjLod", "texture2DRectProj",
+                         "texture2DGrad",    "texture2DGradARB",
+                         "textureProjLod",   "textureProjGrad",
+                         "textureGrad",      "textureOffset",
+                         "textureLodOffset", "texelFetchOffset",
+                         "textureGather",    "dFdy",
                          "dFdyFine",         "dFdyCoarse"};
 const Words kOfIsf = {"TIME",
                       "TIMEDELTA",
@@ -50,6 +56,11 @@ const Words kOfIsf = {"TIME",
                       "RENDERSIZE",
                       "isf_FragNormCoord",
                       "vv_FragNormCoord"};
+const Words kAliases = {"isf_FragColor", "isf_FragCoord"};
+
+bool is_old_word(std::string_view word) {
+    return kOldWords.contains(word);
+}
 
 bool is_new_type(std::string_view word) {
     if (word == "double" || word == "uint" || word == "atomic_uint") return true;
@@ -87,3 +98,36 @@ bool is_swizzle(std::string_view word) {
 }
 
 }  // namespace aftershade::isf_words
+
+namespace aftershade {
+
+std::string with_isf_names(const std::string& message) {
+    static const std::map<std::string, std::string, std::less<>> kNames = {
+        {"isf_main", "main"},
+        {"isf_sample", "texture2D"},
+        {"isf_data", "gl_FragData"},
+        {"isf_sample_here", "IMG_THIS_PIXEL"},
+        {"isf_FragCoord", "gl_FragCoord"},
+        {"isf_sample_pixel", "IMG_PIXEL"},
+        {"isf_size", "IMG_SIZE"}};
+    std::string text;
+    for (std::size_t i = 0; i < message.size();) {
+        std::size_t end = i;
+        while (end < message.size() &&
+               (std::isalnum(static_cast<unsigned char>(message[end])) || message[end] == '_'))
+            ++end;
+        std::string_view word = std::string_view(message).substr(i, end - i);
+        if (word.empty()) {
+            text += message[i++];
+            continue;
+        }
+        for (const std::string_view prefix : {isf_words::kOwn, isf_words::kCall, isf_words::kHere})
+            if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
+        const auto known = kNames.find(word);
+        text += known == kNames.end() ? word : std::string_view(known->second);
+        i = end;
+    }
+    return text;
+}
+
+}  // namespace aftershade

@@ -1,5 +1,5 @@
 // Words of GLSL's versions and of the host's text, which an ISF file may use as names. Internal to
-// framework/effect/isf.
+// framework/effect.
 #pragma once
 
 #include <set>
@@ -12,6 +12,8 @@ using Words = std::set<std::string, std::less<>>;
 
 /// Stands before a name of the file's own where the name cannot stand by itself.
 inline constexpr std::string_view kOwn = "isf_own_";
+/// Stands before a function that has the name of a variable or an image, too.
+inline constexpr std::string_view kCall = "isf_call_";
 /// Stands before an image's name in IMG_THIS_PIXEL(), where the pixel need not be sampled.
 inline constexpr std::string_view kHere = "isf_here_";
 
@@ -22,6 +24,11 @@ extern const Words kSampling;
 /// Variables of ISF, which files written for other hosts declare.
 extern const Words kOfIsf;
 
+/// Names that some hosts give to an output and a coordinate of GLSL, for files that do not declare them.
+extern const Words kAliases;
+
+/// A word of GLSL 1.20, which nothing can have as its name.
+bool is_old_word(std::string_view word);
 /// Types of GLSL 4.50 that 1.20 has not.
 bool is_new_type(std::string_view word);
 /// A keyword of GLSL 4.50 that GLSL 1.20 already had. No file uses one as a name.
@@ -34,3 +41,10 @@ bool is_host_name(std::string_view word);
 bool is_swizzle(std::string_view word);
 
 }  // namespace aftershade::isf_words
+
+namespace aftershade {
+
+/// A driver's message with the names that the author wrote.
+std::string with_isf_names(const std::string& message);
+
+}  // namespace aftershade
