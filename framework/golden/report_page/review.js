@@ -266,12 +266,15 @@ class Review {
     return node;
   }
   act(test, decision) {
-    const { note } = this.rows.get(test.name),
+    const { note, buttons } = this.rows.get(test.name),
       words = note.value.trim();
+    if (buttons.find((button) => button.dataset.decision === decision).disabled)
+      return tell("It is decided; take the decision back first");
     if (decision === "reject" && !words) {
       note.focus();
       return tell("Write why, then reject");
     }
+    for (const button of buttons) button.disabled = true; // until the answer: a second click is about the same state
     return this.decide([test], decision, decision === "none" ? "" : words);
   }
   /** A key of the page. False where there is none. */
@@ -307,6 +310,7 @@ class Review {
       const [approve, reject, undo] = buttons;
       approve.disabled = !test.approve || decision !== null;
       reject.disabled = decision !== null;
+      undo.disabled = false;
       undo.hidden = decision === null || !!decision.written;
     }
     const { approve, reject, open, waiting } = counts;
