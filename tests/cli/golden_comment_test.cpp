@@ -83,6 +83,10 @@ TEST_F(GoldenComment, OfARunThatEndedEarlySaysWhy) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.out.find("the run ended early"), result.out.npos) << result.out;
     EXPECT_NE(result.out.find("'cases'"), result.out.npos) << result.out;
+    change_report([](Json& report) { report["error"] = "a.json: error: one\nb.json: error: two\n```\n<b>"; });
+    EXPECT_NE(comment().out.find("\n````\na.json: error: one\nb.json: error: two\n```\n<b>\n````\n"),
+              result.out.npos)
+        << comment().out;
 }
 
 TEST_F(GoldenComment, AnnotatesTheDocumentOfTheCaseAndWritesSarif) {
