@@ -183,6 +183,16 @@ test("goes on where it ended, and counts no decision about other images", async 
   const page = await openReview(second.address);
   assert.match(await groupOf(page, names[0]).innerText(), /Approved by Ada/);
   assert.match(await groupOf(page, names[1]).innerText(), /Rejected by Ada.*: why/);
+  const changes = await page.evaluate(
+    () =>
+      new Promise((done) => {
+        let count = 0;
+        const observer = new MutationObserver((all) => (count += all.length));
+        observer.observe(document.querySelector(".review"), { subtree: true, childList: true, attributes: true });
+        setTimeout(() => done(count), 5000); // two polls
+      }),
+  );
+  assert.equal(changes, 0, "where nothing is new nothing is laid out, which takes a second for 1000 cases");
   await page.context().close();
   await second.end();
   // Another picture of the same case.

@@ -55,11 +55,18 @@ class ServedDecisions {
     return "Write approved images";
   }
   take({ decisions, writing }) {
+    this.text = null;
     this.all = new Map(decisions.map((one) => [one.case, one]));
     this.writing = writing;
   }
+  /** Whether something is new. */
   async load() {
-    this.take(await askJson("/api/decisions"));
+    const answer = await askJson("/api/decisions"),
+      text = JSON.stringify(answer),
+      isNew = text !== this.text;
+    if (isNew) this.take(answer);
+    this.text = text;
+    return isNew;
   }
   async decide(wishes) {
     const before = ({ case: name }) => this.all.get(name)?.revision ?? "";
@@ -96,17 +103,19 @@ class Review {
     document.getElementById("head").append(this.bar());
     for (const { test, node } of this.page.cards) if (this.byName.has(test.name)) node.firstChild.after(this.row(test));
     await this.refreshed();
-    if (isServed) setInterval(() => document.hidden || this.refreshed(), POLL_MS);
+    if (isServed) setInterval(() => document.hidden || this.refreshed(false), POLL_MS);
   }
-  async refreshed() {
+  /** Shows what is decided; without `always` only where something is new, since hundreds of rows take long. */
+  async refreshed(always = true) {
     try {
-      await this.decisions.load();
+      const isNew = await this.decisions.load();
       if (this.isAlone) this.say("");
       this.isAlone = false;
-      this.show();
+      if (isNew || always) this.show();
     } catch (error) {
+      // Once: what a decision answered stays readable.
+      if (!this.isAlone) this.say(error.message, true);
       this.isAlone = true;
-      this.say(error.message, true);
     }
   }
 
