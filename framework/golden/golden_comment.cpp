@@ -296,7 +296,10 @@ std::string annotations_of(const std::vector<Row>& rows) {
 std::string sarif_of(const std::vector<Row>& rows) {
     Json results = Json::array();
     for (const Row& row : rows) {
-        const Json location = {{"physicalLocation", {{"artifactLocation", {{"uri", uri_of(file_of(row))}}}}}};
+        // GitHub's code scanning requires a line.
+        const Json location = {
+            {"physicalLocation",
+             {{"artifactLocation", {{"uri", uri_of(file_of(row))}}}, {"region", {{"startLine", 1}}}}}};
         const bool warns = row.test->at("verdict") == "warning";
         results.push_back({{"ruleId", warns ? "golden-warning" : "golden-failure"},
                            {"level", warns ? "warning" : "error"},

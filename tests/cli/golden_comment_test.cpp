@@ -100,7 +100,9 @@ TEST_F(GoldenComment, AnnotatesTheDocumentOfTheCaseAndWritesSarif) {
     const Json& found = sarif["runs"][0]["results"];
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0]["ruleId"], sarif["runs"][0]["tool"]["driver"]["rules"][0]["id"]);
-    EXPECT_EQ(found[0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "golden.json");
+    const Json& place = found[0]["locations"][0]["physicalLocation"];
+    EXPECT_EQ(place["artifactLocation"]["uri"], "golden.json");
+    EXPECT_EQ(place["region"]["startLine"], 1);
 }
 
 TEST_F(GoldenComment, OfAStrangersReportHasNoMarkdownButItsOwn) {
