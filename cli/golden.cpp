@@ -191,6 +191,16 @@ ExitCode approve(const GoldenOptions& options) {
     GoldenApproveOptions approve_options = approve_options_of(setup, options, approve_command(setup));
     approve_options.add = options.add;
     approve_options.renew_sidecars = options.renew_sidecars;
+    if (const auto approvers = approvers_of(setup.suite.folder()))
+        approve_options.why_not = [approvers, by = approve_options.approver](const GoldenCase& test,
+                                                                             const auto&...) {
+            return approvers->may(by, test.name)
+                       ? std::string()
+                       : fmt::format(
+                             "'{}' may not approve it; approvers.json names who may (--approver says "
+                             "who you are)",
+                             by);
+        };
     const GoldenApproval approval = approve_goldens(
         setup.suite, approve_options,
         [](const GoldenCaseResult& test, int done, int all) {

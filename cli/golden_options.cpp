@@ -138,11 +138,41 @@ std::string line_of_git(const fs::path& folder, const std::vector<std::string>& 
     return lines.empty() ? "" : lines.back();
 }
 
+namespace {
+
+fs::path approvers_file(const fs::path& folder) {
+    return folder / "approvers.json";
+}
+
+/// A link that leads nowhere is a list that cannot be read, not an absent one.
+bool has_approvers(const fs::path& folder) {
+    return fs::exists(fs::symlink_status(approvers_file(folder)));
+}
+
+}  // namespace
+
+std::optional<GoldenApprovers> approvers_of(const fs::path& folder) {
+    if (!has_approvers(folder)) return std::nullopt;
+    Diagnostics diagnostics;
+    GoldenApprovers approvers = read_approvers(approvers_file(folder), diagnostics);
+    if (diagnostics.has_errors()) throw CodedError(kCompareUsage, diagnostics);
+    return approvers;
+}
+
 std::string approver_of(const GoldenOptions& options, const fs::path& folder) {
-    if (!options.approver.empty()) return options.approver;
-    if (const std::string name = line_of_git(folder, {"config", "user.name"}); !name.empty()) return name;
-    const char* user = std::getenv("USER");
-    return user ? user : "";
+    std::string name = options.approver;
+    if (name.empty()) {
+        const char* const user = std::getenv("USER");
+        name = line_of_git(folder, {"config", "user.name"});
+        if (name.empty() && user) name = user;
+        const std::string address =
+            has_approvers(folder) ? line_of_git(folder, {"config", "user.email"}) : "";
+        if (!address.empty()) name += " <" + address + ">";
+    }
+    if (const std::string fault = fault_of_name(name); !fault.empty())
+        throw CodedError(kCompareUsage, "the approver's name " + fault +
+                                            "; name yourself with --approver 'Ada <ada@example.org>'");
+    return name;
 }
 
 std::string approve_command(const GoldenSetup& setup) {

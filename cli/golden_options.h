@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "cli/exit_code.h"
 #include "cli/gl_options.h"
 #include "framework/golden/golden_approve.h"
+#include "framework/golden/golden_decisions.h"
 #include "framework/golden/golden_report.h"
 
 namespace aftershade::cli {
@@ -56,7 +58,12 @@ ExitCode run_golden(const GoldenOptions& options);
 /// The last line that `git -C folder` prints with these words; "" where git is absent or fails.
 std::string line_of_git(const std::filesystem::path& folder, const std::vector<std::string>& words);
 
-/// --approver, else git's user.name in the folder, else $USER; "" where none of them is set.
+/// Who may approve images of the suite in the folder; nullopt where it has no approvers.json. Throws
+/// CodedError(kCompareUsage) with every fault of the list.
+std::optional<GoldenApprovers> approvers_of(const std::filesystem::path& folder);
+
+/// --approver, else git's user.name in the folder, else $USER; "" where none of them is set. In a folder
+/// with approvers.json, git's address follows git's name.
 std::string approver_of(const GoldenOptions& options, const std::filesystem::path& folder);
 
 /// `aftershade golden approve` of the suite, as its sidecars name it, whichever command approves.

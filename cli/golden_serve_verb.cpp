@@ -82,23 +82,9 @@ auto seen_bytes_of(const fs::path& report) {
     };
 }
 
-fs::path approvers_of(const fs::path& suite_folder) {
-    return suite_folder / "approvers.json";
-}
-
-/// A link that leads nowhere is a list that cannot be read, not an absent one.
-bool has_approvers(const fs::path& suite_folder) {
-    return fs::exists(fs::symlink_status(approvers_of(suite_folder)));
-}
-
-/// Where a list says who may approve, with the address that it goes by.
-std::string reviewer_of(const GoldenOptions& options) {
-    const fs::path folder =
-        fs::is_directory(options.suite) ? fs::path(options.suite) : fs::absolute(options.suite).parent_path();
-    const std::string name = approver_of(options, folder);
-    if (!options.approver.empty() || !has_approvers(folder)) return name;
-    const std::string address = line_of_git(folder, {"config", "user.email"});
-    return address.empty() ? name : name + " <" + address + ">";
+fs::path suite_folder_of(const GoldenOptions& options) {
+    return fs::is_directory(options.suite) ? fs::path(options.suite)
+                                           : fs::absolute(options.suite).parent_path();
 }
 
 GoldenApplied write_approved(const GoldenOptions& options, const std::vector<GoldenDecision>& decisions,
@@ -108,8 +94,7 @@ GoldenApplied write_approved(const GoldenOptions& options, const std::vector<Gol
     const GoldenSetup setup = prepare_golden(drawing);
     Diagnostics diagnostics;
     GoldenApplyOptions apply;
-    if (has_approvers(setup.suite.folder()))
-        apply.approvers = read_approvers(approvers_of(setup.suite.folder()), diagnostics);
+    apply.approvers = approvers_of(setup.suite.folder());
     const auto resolved = resolve_decisions(setup.suite, decisions, apply.approvers, diagnostics);
     if (diagnostics.has_errors()) throw CodedError(kCompareUsage, diagnostics);
     apply.any_renderer = options.any_renderer;
@@ -127,7 +112,7 @@ ExitCode review_suite(const ReviewArguments& arguments) {
     review::ReviewSetup setup;
     setup.report = options.report;
     setup.suite = options.suite;
-    setup.reviewer = reviewer_of(options);
+    setup.reviewer = approver_of(options, suite_folder_of(options));
     setup.page.limit_bytes = std::uint64_t(options.page_limit_mb * 1024 * 1024);
     setup.write = [&](const std::vector<GoldenDecision>& decisions,
                       const std::function<void(int, int)>& drawn) {

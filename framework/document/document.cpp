@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "framework/base/atomic_file.h"
+#include "framework/base/lfs_pointer.h"
 
 namespace aftershade {
 
@@ -290,6 +291,7 @@ std::optional<Node> read_document(const std::filesystem::path& path, Diagnostics
     std::string fault;
     const std::string text = read_regular_file(path, kMaxDocumentBytes, fault);
     diagnostics.note_document(path);
+    if (fault.empty()) fault = lfs_fault(path);
     if (fault.empty()) return parse_document(text, path.string(), diagnostics);
     diagnostics.error({path.string()}, fault);
     return std::nullopt;

@@ -9,6 +9,7 @@
 
 #include "framework/base/atomic_file.h"
 #include "framework/base/cores.h"
+#include "framework/base/lfs_pointer.h"
 #include "framework/base/path_bounds.h"
 #include "framework/base/side_file.h"
 #include "framework/base/text.h"
@@ -76,10 +77,10 @@ std::optional<GoldenSidecar> read_sidecar(const fs::path& image, std::optional<S
     std::string unreadable;
     const Json json = Json::parse(read_regular_file(file, kMaxSidecarBytes, unreadable), nullptr, false);
     if (!unreadable.empty() || !json.is_object()) {
+        const std::string pointer = lfs_fault(file);
+        if (unreadable.empty()) unreadable = "is not a sidecar, not even a JSON object";
         fault = {Verdict::file_error,
-                 file.string() + ": " +
-                     (unreadable.empty() ? "is not a sidecar, not even a JSON object" : unreadable) +
-                     kRemedy};
+                 file.string() + ": " + (pointer.empty() ? unreadable + kRemedy : pointer)};
         return std::nullopt;
     }
     const auto text = [&](const char* key) {

@@ -10,6 +10,7 @@
 #include "framework/base/atomic_file.h"
 #include "framework/base/error.h"
 #include "framework/base/input_files.h"
+#include "framework/base/lfs_pointer.h"
 #include "framework/base/scratch_folder.h"
 #include "framework/base/side_file.h"
 #include "framework/golden/capture_hash.h"
@@ -79,6 +80,10 @@ public:
         std::vector<Approved> approved;
         for (const RenderedImage& image : traced.rendered.images)
             approved.push_back(approved_images(result.test->goldens, image.name, options_.run.environment));
+        for (const Approved& images : approved)
+            for (const ApprovedImage& image : images)
+                if (const std::string fault = lfs_fault(image.file); !fault.empty())
+                    throw Error(ErrorKind::capture, image.file.string() + ": " + fault);
         refuse(result, traced.rendered.images, approved);
         if (result.verdict > Verdict::warning) return;
         std::error_code failure;

@@ -83,7 +83,14 @@ std::optional<GoldenCase> parse_effect_case(const Node& node, const fs::path& fi
     GoldenCase result;
     result.file = file;
     result.stem = file.stem().string();
-    result.name = file.parent_path().parent_path().filename().string() + "/" + result.stem;
+    const std::string effect = file.parent_path().parent_path().filename().string();
+    result.name = effect + "/" + result.stem;
+    for (const std::string& part : {effect, result.stem})
+        if (!is_case_name(part))
+            diagnostics.error({file.string()},
+                              fmt::format("a case's name begins its files' names: letters, digits, '_' and "
+                                          "'-', not '{}'; rename it",
+                                          part));
     result.goldens = file.parent_path();
     result.folder = file.parent_path();
     read_golden_case({node, effect_case_block()}, root, result, diagnostics);

@@ -52,7 +52,7 @@ std::string block(const std::string& text) {
     std::size_t longest = 2, run = 0;
     for (const char c : text) longest = std::max(longest, run = c == '`' ? run + 1 : 0);
     const std::string fence(longest + 1, '`');
-    return fence + "\n" + printable(text) + "\n" + fence;
+    return fence + "\n" + printable_lines(text) + "\n" + fence;
 }
 
 /// A path as a reference of RFC 3986.
@@ -167,7 +167,7 @@ std::string table_row(const Row& row) {
 
 std::string headline(const Json& report) {
     if (const auto error = report.find("error"); error != report.end())
-        return "### Golden images: the run ended early\n\n" + code(text_of(*error)) + "\n";
+        return "### Golden images: the run ended early\n\n" + block(shortened(text_of(*error))) + "\n";
     const Json& counts = report.at("counts");
     const auto number = [&](const char* key) { return whole_of(counts.at(key)); };
     const std::int64_t failed = number("failed") + number("orphans");
@@ -296,7 +296,10 @@ std::string annotations_of(const std::vector<Row>& rows) {
 std::string sarif_of(const std::vector<Row>& rows) {
     Json results = Json::array();
     for (const Row& row : rows) {
-        const Json location = {{"physicalLocation", {{"artifactLocation", {{"uri", uri_of(file_of(row))}}}}}};
+        // GitHub's code scanning requires a line.
+        const Json location = {
+            {"physicalLocation",
+             {{"artifactLocation", {{"uri", uri_of(file_of(row))}}}, {"region", {{"startLine", 1}}}}}};
         const bool warns = row.test->at("verdict") == "warning";
         results.push_back({{"ruleId", warns ? "golden-warning" : "golden-failure"},
                            {"level", warns ? "warning" : "error"},

@@ -130,11 +130,18 @@ std::vector<std::string> commits_of(const fs::path& document, const fs::path& si
         commits.emplace_back("not committed");
     const std::vector<std::string> approval =
         lines_of_git(sidecar.parent_path(), {"log", "-1", "--format=%H", "--", sidecar.filename().string()});
+    // The oldest commit of a shallow clone seems to have made every file.
+    const bool is_shallow =
+        lines_of_git(folder, {"rev-parse", "--is-shallow-repository"}) == std::vector<std::string>{"true"};
     std::vector<std::string> since;
     if (!approval.empty())
         since = lines_of_git(folder, {"log", "--max-count=5", kFormat, approval[0] + "..HEAD", "--", name});
-    if (since.empty() && commits.empty()) since = lines_of_git(folder, {"log", "-1", kFormat, "--", name});
+    if (since.empty() && commits.empty())
+        since = lines_of_git(
+            folder, {"log", "-1", is_shallow ? "--min-parents=1" : "--min-parents=0", kFormat, "--", name});
     for (const std::string& commit : since) commits.push_back(printable(commit));
+    if (commits.empty() && is_shallow)
+        commits.emplace_back("in a commit that this shallow clone lacks (git fetch --unshallow)");
     return commits;
 }
 

@@ -1,5 +1,6 @@
 #include "framework/golden/golden_grammar.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
 #include <chrono>
@@ -144,17 +145,12 @@ bool is_tap(const std::string& text) {
     return std::count(text.begin(), text.end(), '.') == 1 && text.find_first_of("/=") == std::string::npos;
 }
 
-bool is_case_name(const std::string& name) {
-    const auto fits = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_' || c == '-'); };
-    return !name.empty() && name.front() != '-' && std::all_of(name.begin(), name.end(), fits);
-}
-
-/// What each case has, wherever it stands.
 bool is_day(const std::string& text) {
     using namespace std::chrono;
     int year = 0;
     unsigned month = 0, day = 0;
-    return text.size() == 10 && std::sscanf(text.c_str(), "%4d-%2u-%2u", &year, &month, &day) == 3 &&
+    return std::sscanf(text.c_str(), "%4d-%2u-%2u", &year, &month, &day) == 3 && year >= 0 &&
+           fmt::format("{:04}-{:02}-{:02}", year, month, day) == text &&
            year_month_day(std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)).ok();
 }
 
@@ -169,6 +165,7 @@ Block quarantine_block() {
                      required("reason", text({.min_length = 1}), "Why, for the report.")}};
 }
 
+/// What each case has, wherever it stands.
 std::vector<Key> common_keys() {
     const Form range = frame_range_form("'{}' is not a range of frames");
     const Form steps = grammar::list(grammar::custom({.type = "[steps of a look](looks.md)"}));
@@ -208,6 +205,11 @@ Block case_block() {
 }
 
 }  // namespace
+
+bool is_case_name(const std::string& name) {
+    const auto fits = [](unsigned char c) { return c < 0x80 && (std::isalnum(c) || c == '_' || c == '-'); };
+    return !name.empty() && name.front() != '-' && std::all_of(name.begin(), name.end(), fits);
+}
 
 const Block& golden_tolerance_block() {
     static const Block block = tolerance_block();

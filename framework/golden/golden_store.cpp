@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -102,8 +103,16 @@ const char* remedy_of(const std::string& fault) {
         return "put it there again, or remove its sidecar and approve a new one";
     if (has("401") || has("403"))
         return "check ~/.netrc, rclone.conf, or AFTERSHADE_STORE_TOKEN with AFTERSHADE_STORE_TOKEN_URL";
-    if (has("timed out") || has("time limit")) return "check the store, or allow more time with --timeout";
+    if (has("SSL")) return "check its certificate, or set CURL_CA_BUNDLE to the file of its authority";
+    if (has("timed out") || has("time limit") || has("too slow"))
+        return "check the store, or allow more time with --timeout";
     return "check the address in the suite's 'store', and that it can be reached from here";
+}
+
+/// Whether curl would wait as long for each other image of the store.
+bool is_of_all_images(const std::string& fault) {
+    const auto has = [&](const char* words) { return fault.find(words) != fault.npos; };
+    return has("onnect to") || has("resolve host") || has("timed out") || has("too slow") || has("SSL");
 }
 
 /// Runs it with each line that it prints, and returns why it failed; "" where it did not.
@@ -183,9 +192,18 @@ void GoldenStore::push(const std::set<std::string>& digests, const fs::path& fol
 
 GoldenStore::Faults GoldenStore::transfer(Direction direction, const std::set<std::string>& digests,
                                           const fs::path& folder, const std::atomic<bool>& interrupt) const {
-    if (is_url(store_)) return by_curl(direction, digests, folder, interrupt);
     if (store_.starts_with(kRclone)) return by_rclone(direction, digests, folder, interrupt);
-    return by_folder(direction, digests, folder);
+    if (!is_url(store_)) return by_folder(direction, digests, folder);
+    // Where no server answers, one image is waited for, not hundreds.
+    const auto second = std::next(digests.begin());
+    Faults faults = by_curl(direction, {digests.begin(), second}, folder, interrupt);
+    if (!faults.empty() && is_of_all_images(faults.begin()->second)) {
+        const std::string fault = faults.begin()->second;
+        for (const std::string& digest : digests) faults[digest] = fault;
+    } else if (second != digests.end()) {
+        faults.merge(by_curl(direction, {second, digests.end()}, folder, interrupt));
+    }
+    return faults;
 }
 
 GoldenStore::Faults GoldenStore::by_folder(Direction direction, const std::set<std::string>& digests,
@@ -259,7 +277,9 @@ GoldenStore::Faults GoldenStore::by_rclone(Direction direction, const std::set<s
     std::string names;
     for (const std::string& digest : digests) names += stored_name(digest) + "\n";
     write_text_file(list, names);
-    const std::string timeout = fmt::format("{:.3f}s", std::chrono::duration<double>(timeout_).count());
+    // Of silence, as curl's speed-time.
+    const auto silence = std::min<std::chrono::duration<double>>(timeout_, std::chrono::seconds(30));
+    const std::string timeout = fmt::format("{:.3f}s", silence.count());
     WorkerCommand command;
     command.arguments = {direction == Direction::find ? "lsf" : "copy",
                          "--files-from-raw",

@@ -149,7 +149,8 @@ void check_tags(const GoldenSuite& suite, Diagnostics& diagnostics) {
 
 std::optional<GoldenSuite> read_golden_suite(const std::string& argument, Diagnostics& diagnostics) {
     GoldenSuite suite;
-    suite.argument = argument;
+    // In printed commands and sidecars: a path, whatever it begins with.
+    suite.argument = (argument.starts_with('-') ? "./" : "") + argument;
     suite.file = fs::is_directory(argument) ? fs::path(argument) / "golden.json" : fs::path(argument);
     const auto node = read_document(suite.file, diagnostics);
     if (node) SuiteReader(suite, diagnostics).read(*node);

@@ -111,7 +111,13 @@ std::map<std::string, ReviewedCase> ReviewServer::cases_of(const Json& report) {
     return cases;
 }
 
-ReviewServer::ReviewServer(ReviewSetup setup) : setup_(std::move(setup)), file_(setup_.report) {
+std::filesystem::file_time_type ReviewServer::written_at() const {
+    std::error_code absent;  // the least time
+    return std::filesystem::last_write_time(setup_.report / "report.json", absent);
+}
+
+ReviewServer::ReviewServer(ReviewSetup setup)
+    : setup_(std::move(setup)), file_(setup_.report), read_of_(written_at()) {
     Json data = report_page_data(setup_.report, setup_.page);
     try {
         cases_ = cases_of(data["report"]);
@@ -190,7 +196,9 @@ void ReviewServer::mark_written(const std::vector<GoldenDecision>& written, Json
         answer["warnings"] = Json::array();
         for (const GoldenDecision& one : written) {
             const auto now = find_case(decisions, one.test);
-            if (now != decisions.end() && *now == one) now->is_written = true;
+            GoldenDecision as_written = one;  // also by another reviewer at the same time
+            as_written.is_written = true;
+            if (now != decisions.end() && (*now == one || *now == as_written)) *now = as_written;
             else
                 answer["warnings"].push_back(
                     one.test +
@@ -253,6 +261,11 @@ void ReviewServer::answer(const Request& request, const serve::Connections::Repl
     if (request.method != found->second.first)
         return reply(serve::error_response(405, "this address takes " + found->second.first));
     try {
+        // Its pictures are no longer those that this report's figures are about.
+        if (written_at() != read_of_)
+            throw Refusal{409, (setup_.report / "report.json").string() +
+                                   ": was written again, or removed, since `aftershade golden serve` read "
+                                   "it; end the command and start it again"};
         reply(found->second.second());
     } catch (const Refusal& refusal) {
         reply(serve::error_response(refusal.status, refusal.message));

@@ -69,7 +69,8 @@ struct ReviewedCase {
 /// [any thread]
 class ReviewServer {
 public:
-    /// Reads the report once. Throws Error(ErrorKind::capture).
+    /// Reads the report once: if report.json is written again, each answer is 409. Throws
+    /// Error(ErrorKind::capture).
     explicit ReviewServer(ReviewSetup setup);
 
     /// Answers a request to an address below /api/ that refusal() lets through.
@@ -84,6 +85,8 @@ private:
     serve::Response write();
     serve::Response picture(const serve::Request& request) const;
     nlohmann::ordered_json state() const;
+    /// When report.json was, so that a report of a later run is noticed.
+    std::filesystem::file_time_type written_at() const;
     /// Whether a decision is about the images that this report shows.
     bool is_current(const GoldenDecision& decision) const;
     void mark_written(const std::vector<GoldenDecision>& written, nlohmann::ordered_json& answer);
@@ -91,8 +94,9 @@ private:
     ReviewSetup setup_;
     ReviewFile file_;
     std::map<std::string, ReviewedCase> cases_;
-    std::string report_json_;  // what the page requests first
-    std::mutex writing_;       // held while images are drawn and written
+    std::filesystem::file_time_type read_of_;  // what was read
+    std::string report_json_;                  // what the page requests first
+    std::mutex writing_;                       // held while images are drawn and written
     std::atomic<int> done_ = 0, all_ = 0;
     mutable std::mutex mutex_;          // of what follows
     std::set<std::string> in_writing_;  // cases whose images are being written

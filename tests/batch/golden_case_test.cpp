@@ -52,6 +52,19 @@ TEST(GoldenCase, OfAnEffectIsNamedByItsFolderAndKeepsItsImagesBesideIt) {
     EXPECT_EQ(test->goldens, "effects/blur/cases");
 }
 
+TEST(GoldenCase, OfAnEffectHasANameThatIsNoGlobCommandOrMarkup) {
+    const std::string text = R"({"aftershade": 1, "capture": "a.exr", "frames": "1", "steps": [],
+        "outputs": ["color"], "tolerance": {}})";
+    for (const char* file :
+         {"effects/blur/cases/*.json", "effects/blur/cases/-x.json", "effects/<b>/cases/x.json",
+          "effects/blur/cases/a b.json", "effects/blur/cases/a\nb.json"}) {
+        Diagnostics diagnostics;
+        EXPECT_FALSE(parse_effect_case(*parse_document(text, file, diagnostics), file, "/root", diagnostics));
+        EXPECT_NE(faults_of(diagnostics).find("letters, digits, '_' and '-', not '"), std::string::npos)
+            << faults_of(diagnostics);
+    }
+}
+
 TEST(GoldenCase, GivesTheStepsOnAsTheyStand) {
     Diagnostics diagnostics;
     const std::string text = R"([{"effect": "a\"b\n", "x": [1, -0.25, true, null], "y": {}}])";

@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 class GoldenApply : public GoldenCommand {
 protected:
     GoldenApply() {
+        approve();
         write_text(folder_ / "approvers.json",
                    R"({ "aftershade": 1, "approvers": [ { "who": ["ada@example.org"] } ] })");
-        approve();
         write_frame(1, 20);
         write_frame(2, 20);
         before_ = contents(folder_ / "goldens");

@@ -259,5 +259,36 @@ TEST_F(GoldenApprove, NamesWhoApprovedAndWhen) {
     EXPECT_EQ(sidecar("corner.color.0001")["approver"], "grace");
 }
 
+TEST_F(GoldenApprove, KeepsTheGoldensOfACaseThatTheListDoesNotGiveToTheApprover) {
+    approve();
+    const auto before = contents(folder_ / "goldens");
+    darken("corner.color.0001");
+    darken("lens.color.0002");
+    const auto darkened = contents(folder_ / "goldens");
+    write_text(folder_ / "approvers.json", R"({ "aftershade": 1, "approvers": [
+        { "cases": ["corner"], "who": ["ada@example.org"] }, { "who": ["grace@example.org"] } ] })");
+    const auto as = [&](const std::string& name) {
+        write_text(folder_ / "gitconfig",
+                   "[user]\n name = " + name + "\n email = " + name + "@example.org\n");
+        return golden({"approve", "golden.json"}, {{"GIT_CONFIG_GLOBAL", (folder_ / "gitconfig").string()}});
+    };
+    const CommandResult eve = as("eve");
+    EXPECT_EQ(eve.exit_code, 2) << eve.err;
+    EXPECT_NE(eve.err.find("'eve <eve@example.org>' may not approve it; approvers.json names who may"),
+              std::string::npos)
+        << eve.err;
+    EXPECT_EQ(contents(folder_ / "goldens"), darkened);
+    EXPECT_EQ(as("ada").out, "goldens/corner.color.0001.exr\n");
+    EXPECT_EQ(as("ada").exit_code, 2) << "lens is another's";
+    EXPECT_EQ(as("grace").out, "goldens/lens.color.0002.exr\n");
+    EXPECT_EQ(as("eve").exit_code, 0) << "nothing is new";
+    EXPECT_EQ(read_text(image("corner.color.0001")), before.at("corner.color.0001.exr"));
+    const Json sidecar = Json::parse(read_text(sidecar_path(image("lens.color.0002"))));
+    EXPECT_EQ(sidecar["approver"], "grace <grace@example.org>");
+    EXPECT_EQ(golden({"approve", "golden.json"}, {{"GIT_CONFIG_GLOBAL", "/dev/null"}}).exit_code, 0);
+    write_text(folder_ / "approvers.json", "{}");
+    EXPECT_EQ(golden({"approve", "golden.json"}).exit_code, 64) << "a list that is faulty gives no one leave";
+}
+
 }  // namespace
 }  // namespace aftershade::test

@@ -83,6 +83,10 @@ TEST_F(GoldenComment, OfARunThatEndedEarlySaysWhy) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.out.find("the run ended early"), result.out.npos) << result.out;
     EXPECT_NE(result.out.find("'cases'"), result.out.npos) << result.out;
+    change_report([](Json& report) { report["error"] = "a.json: error: one\nb.json: error: two\n```\n<b>"; });
+    EXPECT_NE(comment().out.find("\n````\na.json: error: one\nb.json: error: two\n```\n<b>\n````\n"),
+              result.out.npos)
+        << comment().out;
 }
 
 TEST_F(GoldenComment, AnnotatesTheDocumentOfTheCaseAndWritesSarif) {
@@ -96,7 +100,9 @@ TEST_F(GoldenComment, AnnotatesTheDocumentOfTheCaseAndWritesSarif) {
     const Json& found = sarif["runs"][0]["results"];
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0]["ruleId"], sarif["runs"][0]["tool"]["driver"]["rules"][0]["id"]);
-    EXPECT_EQ(found[0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"], "golden.json");
+    const Json& place = found[0]["locations"][0]["physicalLocation"];
+    EXPECT_EQ(place["artifactLocation"]["uri"], "golden.json");
+    EXPECT_EQ(place["region"]["startLine"], 1);
 }
 
 TEST_F(GoldenComment, OfAStrangersReportHasNoMarkdownButItsOwn) {

@@ -202,6 +202,25 @@ TEST_F(GoldenExplain, NamesWhatHasChangedOfACaseThatDoesNotRender) {
         << result.out;
 }
 
+TEST_F(GoldenExplain, NamesNoCommitThatAShallowCloneCannotTell) {
+    replace("look.json", R"("exposure": 0.5)", R"("exposure": 0.6)");
+    commit("Brighter");
+    write_text(folder_ / "unrelated", "x");
+    commit("Unrelated");
+    EXPECT_NE(explain().out.find(" Ada: Brighter\n"), std::string::npos);
+    const TemporaryFolder clone;
+    const std::string url = "file://" + folder_.path().string();
+    ASSERT_EQ(git({"clone", "-q", "--depth", "1", url, (clone / "c").string()}).exit_code, 0);
+    const CommandResult result = run_aftershade(
+        {"golden", "explain", "golden.json", "film"}, clone / "c",
+        {{"AFTERSHADE_DATA", (folder_ / "data").string()}, {"AFTERSHADE_BACKEND", "software"}});
+    EXPECT_NE(
+        result.out.find("cause: parameter color_grade.exposure is 0.6, was 0.5\n    in a commit that this "
+                        "shallow clone lacks (git fetch --unshallow)\n"),
+        std::string::npos)
+        << result.out;
+}
+
 TEST_F(GoldenExplain, SaysWhatItCannotFindOut) {
     EXPECT_EQ(explain().out, "film: every image has the approved bits\n");
     const CommandResult unknown = suite({"explain", "flim"});

@@ -63,13 +63,17 @@ TEST_F(GoldenMessages, OfAQuarantineHaveItsDayAndItsReason) {
         EXPECT_NE(result.err.find(line), result.err.npos) << result.err;
         EXPECT_NE(junit().find(line), std::string::npos);
     }
-    write_text(folder_ / "golden.json",
-               R"({ "aftershade": 1, "cases": [ { "name": "corner", "steps": [ { "effect": "vignette" } ],
-        "capture": "in_0001.exr", "quarantine": { "until": "2027-02-30" } } ] })");
-    const CommandResult faulty = run();
-    EXPECT_EQ(faulty.exit_code, 64);
-    EXPECT_NE(faulty.err.find("'2027-02-30' is not a day such as 2027-01-31"), faulty.err.npos) << faulty.err;
-    EXPECT_NE(faulty.err.find("the quarantine has no 'reason'"), faulty.err.npos) << faulty.err;
+    for (const std::string until : {"2027-02-30", "2027-01- 1", "-027-01-31", "2027-1-31", "31.01.2027"}) {
+        write_text(folder_ / "golden.json",
+                   R"({ "aftershade": 1, "cases": [ { "name": "corner", "steps": [ { "effect": "vignette" } ],
+            "capture": "in_0001.exr", "quarantine": { "until": ")" +
+                       until + R"(" } } ] })");
+        const CommandResult faulty = run();
+        EXPECT_EQ(faulty.exit_code, 64);
+        EXPECT_NE(faulty.err.find("'" + until + "' is not a day such as 2027-01-31"), faulty.err.npos)
+            << faulty.err;
+        EXPECT_NE(faulty.err.find("the quarantine has no 'reason'"), faulty.err.npos) << faulty.err;
+    }
 }
 
 TEST_F(GoldenMessages, TellAReasonOfSeveralImagesOnce) {
@@ -83,13 +87,35 @@ TEST_F(GoldenMessages, TellAReasonOfSeveralImagesOnce) {
 
 TEST_F(GoldenMessages, OfAPointerOfGitLfsNameTheRemedyAlone) {
     approve();
-    write_text(image("corner.color.0001"),
-               "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 9\n");
+    const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 9\n";
+    write_text(image("corner.color.0001"), pointer);
+    const CommandResult kept = golden({"approve", "golden.json"});
+    EXPECT_EQ(kept.exit_code, 4) << "no one has seen what the new image would replace\n" << kept.err;
+    EXPECT_NE(kept.err.find("git lfs pull"), kept.err.npos) << kept.err;
+    EXPECT_EQ(read_text(image("corner.color.0001")), pointer);
     const CommandResult result = reported();
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_NE(result.err.find("git lfs pull"), result.err.npos) << result.err;
     EXPECT_EQ(result.err.find("approve"), result.err.npos) << result.err;
     EXPECT_NE(junit().find("failures=\"0\" errors=\"1\""), std::string::npos) << junit();
+}
+
+TEST_F(GoldenMessages, OfDocumentsThatGitLfsHasNotFetchedNameTheRemedy) {
+    approve();
+    const std::filesystem::path sidecar = sidecar_path(image("corner.color.0001"));
+    for (const std::filesystem::path& file : {folder_ / "lens.json", sidecar, folder_ / "golden.json"}) {
+        SCOPED_TRACE(file);
+        const std::string text = read_text(file);
+        write_text(file, "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 9\n");
+        const CommandResult result = run();
+        EXPECT_GE(result.exit_code, 2);
+        EXPECT_NE(result.err.find(file.filename().string() + ": "), result.err.npos) << result.err;
+        EXPECT_NE(result.err.find("is a pointer of Git LFS, not the file itself (fetch it: git lfs pull)"),
+                  result.err.npos)
+            << result.err;
+        EXPECT_EQ(result.err.find("syntax error"), result.err.npos) << result.err;
+        write_text(file, text);
+    }
 }
 
 TEST_F(GoldenMessages, HaveTheErrorsOfAShaderInTheSnippet) {

@@ -39,6 +39,20 @@ TEST_F(GoldenRun, FailsWithoutGoldensAndNamesTheCommandThatApproves) {
     EXPECT_NE(again.err.find("1 passed, 0 with warnings, 1 failed"), std::string::npos) << again.err;
 }
 
+TEST_F(GoldenRun, NamesASuiteThatBeginsWithADashAsAPathInItsCommands) {
+    std::filesystem::create_directories(folder_ / "-suite");
+    std::string document = read_text(folder_ / "golden.json");
+    for (const char* name : {"lens.json", "in_"})
+        for (std::size_t at = 0; (at = document.find(name, at)) != document.npos; at += 4)
+            document.insert(at, "../");
+    write_text(folder_ / "-suite/golden.json", document);
+    const CommandResult result = golden({"run", "--", "-suite"});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(result.err.find("to approve: aftershade golden approve ./-suite --filter lens\n"),
+              std::string::npos)
+        << result.err;
+}
+
 TEST_F(GoldenRun, FailsTheCaseAloneWhoseGoldenLeadsOutOfItsFolder) {
     approve();
     const TemporaryFolder elsewhere;

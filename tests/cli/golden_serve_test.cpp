@@ -42,6 +42,12 @@ TEST_F(GoldenServe, SaysWhatIsWrongWithAReportOrItsDecisionsBeforeThereIsAPage) 
         EXPECT_EQ(result.out, "");
         return result.err;
     };
+    const CommandResult who = golden({"serve", "golden.json", "--approver", std::string(300, 'x')});
+    EXPECT_EQ(who.exit_code, 64) << "its decisions would be faults of the file";
+    EXPECT_NE(
+        who.err.find("the approver's name has 300 bytes; the most is 200; name yourself with --approver"),
+        std::string::npos)
+        << who.err;
     write_text(folder_ / "report/decisions.json", R"({ "aftershade": 1, "decisions": [ { "case": 3 } ] })");
     EXPECT_NE(err().find("remove it to begin the review again"), std::string::npos);
     std::filesystem::remove(folder_ / "report/decisions.json");

@@ -249,6 +249,11 @@ TEST_F(GoldenStore, FetchesFiveHundredImagesOnce) {
     EXPECT_GE(images, 490u) << "frames that are equal share an image";
     const auto before = contents(folder_ / "goldens");
     remove_images();
+    set_mode("slow");
+    write_text(folder_ / "control/log", "");
+    EXPECT_EQ(run_there({}, "1").exit_code, 4);
+    EXPECT_LE(fetched(), 3u) << "one image and its retries, and not those of each";
+    set_mode("");
     write_text(folder_ / "control/log", "");
     EXPECT_EQ(run_there().exit_code, 0);
     EXPECT_EQ(fetched(), images);

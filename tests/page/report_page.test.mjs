@@ -176,6 +176,25 @@ test("is short where all is well", async () => {
   await page.context().close();
 });
 
+test("lays out of many cases only those near the window", async () => {
+  const mine = join(folder, "many");
+  cpSync(report, mine, { recursive: true });
+  const failing = caseOf("one_pixel");
+  const cases = Array.from({ length: 150 }, (_, i) => ({ ...failing, name: `case_${i}` }));
+  writeFileSync(join(mine, "report.json"), JSON.stringify({ ...json, cases }));
+  rebuildPage(mine, "--page-limit", "0");
+  const page = await openPage(browser, `${join(mine, "index.html")}#case-case_140`);
+  const isLaidOut = (name) =>
+    page.locator(`#case-${name} .details`).evaluate((node) => node.checkVisibility({ contentVisibilityAuto: true }));
+  await page.waitForFunction(() => Math.abs(document.getElementById("case-case_140").getBoundingClientRect().top) < 100);
+  assert.equal(await isLaidOut("case_140"), true);
+  assert.equal(await isLaidOut("case_10"), false);
+  await page.locator("#case-case_10").scrollIntoViewIfNeeded();
+  await page.waitForFunction(() => document.querySelector("#case-case_10 .details").innerText.includes("1 of 32400"));
+  assert.deepEqual(page.faults, []);
+  await page.context().close();
+});
+
 test("opens the case that its address names", async () => {
   const page = await openPage(browser, `${file}#case-passing`);
   assert.ok(await page.locator("#case-passing").evaluate((node) => node.open));

@@ -148,6 +148,28 @@ test("two reviewers decide about 30 cases, and the tree is what approve makes of
   assert.equal(changed.length, 56, "28 images and their sidecars");
 });
 
+test("lets all reviewers write at once, and takes a second click for none", async () => {
+  const suite = copyOf(template, join(folder, "at_once"));
+  const all = [await reviewed(suite, ADA), await reviewed(suite, GRACE)];
+  const page = await openReview(all[0].address);
+  await page.route("**/api/decide", async (route) => (await new Promise((done) => setTimeout(done, 500)), route.continue()));
+  await groupOf(page, names[0]).getByRole("button", { name: "Approve" }).dblclick({ noWaitAfter: true });
+  await groupOf(page, names[0]).getByText("Approved by Ada").waitFor();
+  assert.equal(await page.locator(".review-words").innerText(), "");
+  await page.locator(`[id="case-${names[0]}"] summary`).first().focus();
+  await page.keyboard.press("y");
+  await page.getByText("It is decided; take the decision back first").waitFor();
+  const answers = await Promise.all(all.map(({ address }) => apiOf(address)("/api/write", {})));
+  for (const { status, json } of answers) {
+    assert.equal(status, 200);
+    assert.deepEqual([json.warnings, json.kept], [[], []]);
+    assert.equal(json.decisions[0].written, true);
+  }
+  assert.deepEqual(page.faults, []);
+  await page.context().close();
+  for (const server of all) await server.end();
+});
+
 test("goes on where it ended, and counts no decision about other images", async () => {
   const suite = copyOf(template, join(folder, "again"));
   const first = await reviewed(suite, ADA);
@@ -161,6 +183,16 @@ test("goes on where it ended, and counts no decision about other images", async 
   const page = await openReview(second.address);
   assert.match(await groupOf(page, names[0]).innerText(), /Approved by Ada/);
   assert.match(await groupOf(page, names[1]).innerText(), /Rejected by Ada.*: why/);
+  const changes = await page.evaluate(
+    () =>
+      new Promise((done) => {
+        let count = 0;
+        const observer = new MutationObserver((all) => (count += all.length));
+        observer.observe(document.querySelector(".review"), { subtree: true, childList: true, attributes: true });
+        setTimeout(() => done(count), 5000); // two polls
+      }),
+  );
+  assert.equal(changes, 0, "where nothing is new nothing is laid out, which takes a second for 1000 cases");
   await page.context().close();
   await second.end();
   // Another picture of the same case.
@@ -174,6 +206,28 @@ test("goes on where it ended, and counts no decision about other images", async 
   assert.match(await groupOf(later, names[1]).innerText(), /Rejected by Ada/);
   await later.context().close();
   await third.end();
+});
+
+test("says that the suite was run again, and takes no decision about what its page shows", async () => {
+  const suite = copyOf(template, join(folder, "rerun"));
+  const server = await reviewed(suite, ADA);
+  const ask = apiOf(server.address);
+  const page = await openReview(server.address);
+  await groupOf(page, names[0]).getByRole("button", { name: "Approve" }).click();
+  await groupOf(page, names[0]).getByText("Approved by Ada").waitFor();
+  assert.equal(golden(suite, "run", ".", "--report", "report", "--filter", names[1]).code, 2);
+  await page.getByText("was written again, or removed, since `aftershade golden serve` read it").waitFor();
+  const wish = { case: names[1], decision: "approve", note: "", before: "" };
+  for (const [path, body] of [["/api/report"], ["/api/decide", { decisions: [wish] }], ["/api/write", {}]])
+    assert.equal((await ask(path, body)).status, 409, path);
+  assert.deepEqual(
+    decisionsOf(suite).map((one) => one.case),
+    [names[0]],
+  );
+  await page.reload();
+  await page.getByText("end the command and start it again").waitFor();
+  await page.context().close();
+  await server.end();
 });
 
 test("writes no image that differs from the one that was reviewed", async () => {

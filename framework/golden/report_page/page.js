@@ -228,7 +228,9 @@ class Page {
     );
     this.cards = ordered.map((test) => ({ test, node: safeCaseCard(test, this.report, this.viewers) }));
     this.none = element("p", { class: "quiet", hidden: true }, "No case matches.");
-    document.getElementById("cases").append(...this.cards.map(({ node }) => node), this.none);
+    const list = document.getElementById("cases");
+    list.append(...this.cards.map(({ node }) => node), this.none);
+    list.classList.toggle("many", ordered.length > 100);
   }
   toggleKind(kind) {
     if (!this.kinds.delete(kind)) this.kinds.add(kind);

@@ -55,11 +55,18 @@ class ServedDecisions {
     return "Write approved images";
   }
   take({ decisions, writing }) {
+    this.text = null;
     this.all = new Map(decisions.map((one) => [one.case, one]));
     this.writing = writing;
   }
+  /** Whether something is new. */
   async load() {
-    this.take(await askJson("/api/decisions"));
+    const answer = await askJson("/api/decisions"),
+      text = JSON.stringify(answer),
+      isNew = text !== this.text;
+    if (isNew) this.take(answer);
+    this.text = text;
+    return isNew;
   }
   async decide(wishes) {
     const before = ({ case: name }) => this.all.get(name)?.revision ?? "";
@@ -96,17 +103,19 @@ class Review {
     document.getElementById("head").append(this.bar());
     for (const { test, node } of this.page.cards) if (this.byName.has(test.name)) node.firstChild.after(this.row(test));
     await this.refreshed();
-    if (isServed) setInterval(() => document.hidden || this.refreshed(), POLL_MS);
+    if (isServed) setInterval(() => document.hidden || this.refreshed(false), POLL_MS);
   }
-  async refreshed() {
+  /** Shows what is decided; without `always` only where something is new, since hundreds of rows take long. */
+  async refreshed(always = true) {
     try {
-      await this.decisions.load();
+      const isNew = await this.decisions.load();
       if (this.isAlone) this.say("");
       this.isAlone = false;
-      this.show();
+      if (isNew || always) this.show();
     } catch (error) {
+      // Once: what a decision answered stays readable.
+      if (!this.isAlone) this.say(error.message, true);
       this.isAlone = true;
-      this.say(error.message, true);
     }
   }
 
@@ -266,12 +275,15 @@ class Review {
     return node;
   }
   act(test, decision) {
-    const { note } = this.rows.get(test.name),
+    const { note, buttons } = this.rows.get(test.name),
       words = note.value.trim();
+    if (buttons.find((button) => button.dataset.decision === decision).disabled)
+      return tell("It is decided; take the decision back first");
     if (decision === "reject" && !words) {
       note.focus();
       return tell("Write why, then reject");
     }
+    for (const button of buttons) button.disabled = true; // until the answer: a second click is about the same state
     return this.decide([test], decision, decision === "none" ? "" : words);
   }
   /** A key of the page. False where there is none. */
@@ -307,6 +319,7 @@ class Review {
       const [approve, reject, undo] = buttons;
       approve.disabled = !test.approve || decision !== null;
       reject.disabled = decision !== null;
+      undo.disabled = false;
       undo.hidden = decision === null || !!decision.written;
     }
     const { approve, reject, open, waiting } = counts;
