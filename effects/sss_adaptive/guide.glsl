@@ -9,8 +9,14 @@
 const float kMostFrames = 4096.0;
 
 // The most that the blurs leave over, as a part of the light that there is: on the stills of docs/quality-sss-adaptive.md it is
-// more in 2 of 10,000 pixels.
-const float kMostLeftOver = 1.0;
+// more in 10 of 10,000 pixels.
+const float kMostLeftOver = 0.5;
+
+// Where light moves, the average lags by more than a frame of many samples is noisy: one of so many counts as much as all before
+// it, but no more than the second constant times the part by which the blurred light changed. Without, an ear whose light moves
+// lost 9 dB.
+const float kSamplesOfHalf = 40.0;
+const float kWeightOfChange = 8.0;
 
 // What a pixel that scatters comes to after this frame.
 struct Guided {
@@ -22,11 +28,13 @@ struct Guided {
 // The light of samples that find this share of the profile, of which filled() makes `light`.
 vec3 unfilled(vec3 light, Gathered sums) { return light * filling(sums.share / sums.whole) * sums.whole; }
 
-// What the average of the frame before is in this frame's light, of which `now` is.
-Gathered carried(ivec2 p, ivec2 q, Gathered now) {
+// What the average of the frame before is in this frame's light, of which `now` is. change: of the blurred light, as a part of it.
+Gathered carried(ivec2 p, ivec2 q, Gathered now, out float change) {
     Gathered then = Gathered(texelFetch(guided_prev, q, 0).rgb, texelFetch(guided_share_prev, q, 0).rgb,
                              texelFetch(guided_whole_prev, q, 0).rgb);
     vec3 smooth_now = texelFetch(blurred, p, 0).rgb, smooth_then = texelFetch(blurred_prev, q, 0).rgb;
+    vec3 changes = abs(smooth_now - smooth_then) / max(max(smooth_now, smooth_then), 1e-20);
+    change = max(changes.r, max(changes.g, changes.b));
     // Where light fades, so does what the blurs are wrong by.
     vec3 left_over = (filled(then) - smooth_then) * min(smooth_now / max(smooth_then, 1e-20), 1.0);
     // Where samples met a highlight that the blurs missed, only they can say that it has gone.
@@ -35,13 +43,15 @@ Gathered carried(ivec2 p, ivec2 q, Gathered now) {
     return then;
 }
 
-// `now`: of the frame. q: where the pixel was, if was_seen, in the frame before. Sums are averaged apart: a ratio of few samples
-// is off in the mean, that of the averages less.
-Guided guided_light(ivec2 p, Gathered now, ivec2 q, bool was_seen) {
-    float frames = was_seen ? texelFetch(guided_prev, q, 0).a : 0.0;
-    Gathered then = frames > 0.0 ? carried(p, q, now) : Gathered(unfilled(texelFetch(blurred, p, 0).rgb, now), now.share, now.whole);
+// `now`: of the frame's `count` samples. q: where the pixel was, if was_seen, in the frame before. Sums are averaged apart: a ratio
+// of few samples is off in the mean, that of the averages less.
+Guided guided_light(ivec2 p, Gathered now, float count, ivec2 q, bool was_seen) {
+    float frames = was_seen ? texelFetch(guided_prev, q, 0).a : 0.0, change = 0.0;
+    Gathered then = frames > 0.0 ? carried(p, q, now, change) : Gathered(unfilled(texelFetch(blurred, p, 0).rgb, now), now.share, now.whole);
     // Frames count alike until the newest would count less than its weight.
-    float frames_now = min(max(frames, kFramesOfBlur) + 1.0, kMostFrames), weight = max(1.0 / frames_now, param.guiding_weight);
+    float frames_now = min(max(frames, kFramesOfBlur) + 1.0, kMostFrames), squared = count * count;
+    float in_change = min(squared / (squared + kSamplesOfHalf * kSamplesOfHalf), kWeightOfChange * change);
+    float weight = max(max(1.0 / frames_now, param.guiding_weight), in_change);
     Gathered sums = Gathered(mix(then.light, now.light, weight), mix(then.share, now.share, weight), mix(then.whole, now.whole, weight));
     vec2 residual = frames > 0.0 ? vec2(q) + 0.5 + residual_at(q) - past_place() : vec2(0.0);
     return Guided(sums, frames_now, (1.0 - weight) * residual);

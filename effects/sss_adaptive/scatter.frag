@@ -25,7 +25,7 @@ void main() {
     out_epoch = vec2(plan_here.each, plan_here.count);
     keep_moments(here, q, past, plan_here.known, plan_here.count, viewed(scattered));
 #if GUIDING
-    Guided now = guided_light(p, sums, q, plan_here.known);
+    Guided now = guided_light(p, sums, plan_here.count, q, plan_here.known);
     keep_average(now);
     scattered = in_part(here.light, filled(now.sums), plan_here.scattered);
 #endif

@@ -85,6 +85,26 @@ TEST(SssAdaptiveLasting, KeepsFineShadowsUnderACameraThatPansByHalfAPixel) {
     }
 }
 
+/// The blurs miss much of shadows as thin as this, and what they miss moves with the shadows. An average that
+/// weighs frames by their age alone has 1.2 times the error.
+TEST(SssAdaptiveLasting, KeepsUpWithThinShadowsThatMove) {
+    LookRunner guided(step("sss_adaptive"), gpu::test_backend(), {kSamples});
+    for (int frame = 1; frame <= 14; ++frame) {
+        const Capture capture = at_frame(frame, [&](int x, int y, int c) {
+            const double from_middle = std::fmod(x + 0.25 * y + 140 - 1.6 * frame, 14) - 7;
+            return float((std::abs(from_middle) < 3 ? 0.05 : 0.9) * (1 - 0.2 * c));
+        });
+        const FrameResult result = guided.run(capture);
+        if (frame < 9) continue;
+        const auto burley = [&](long samples) {
+            return scattered(step("sss_burley", fmt::format(R"("samples": {})", samples)), capture);
+        };
+        const Image reference = burley(2048), fixed = burley(std::lround(mean(result.taps.at(kSamples), 0)));
+        EXPECT_LT(error(result.images.at("irradiance"), reference), error(fixed, reference))
+            << "frame " << frame;
+    }
+}
+
 TEST(SssAdaptiveLasting, TakesFewSamplesAgainOnceItIsNoLongerDarkAround) {
     const auto count = [](float dark) {
         LookRunner look(step("sss_adaptive", "", 12), gpu::test_backend(), {kSamples});

@@ -208,12 +208,11 @@ void halve(Image& image) {
 
 TEST(SssAdaptiveMoving, LosesLittleOfItToTaaInAnyFrame) {
     for (const Motion& motion : motions()) {
-        if (motion.pan_px != 0) continue;  // taa resamples a picture that moves
         SCOPED_TRACE(motion.name);
         LookRunner alone(chain("sss_adaptive", "", ""), gpu::test_backend()),
             followed(chain("sss_adaptive", "", R"(, { "effect": "taa" })"), gpu::test_backend());
         for (int frame = 1; frame <= 13; ++frame) {
-            const Capture capture = captured(motion.light, frame);
+            const Capture capture = captured(motion.light, frame, motion.pan_px);
             const Image step_alone = alone.run(capture).images.at("color"),
                         with_taa = followed.run(capture).images.at("color");
             if (frame < 9) continue;
@@ -226,7 +225,7 @@ TEST(SssAdaptiveMoving, LosesLittleOfItToTaaInAnyFrame) {
 }
 
 /// The step's own average gets better from frame to frame, and what taa keeps is older. Where taa weighs all
-/// frames alike, it loses 2.6 dB.
+/// frames alike, it loses 2.6 dB; where history counts while there are neither motion nor jitter, 1.4 dB.
 TEST(SssAdaptiveMoving, LosesLittleOfItsFirstFramesAtRestToTaaAndGainsByItThen) {
     const Motion still{"at rest",
                        [](double x, double y, int c, int) { return bar(x + y / 4, 50) * (1 - 0.2 * c); }};
@@ -238,7 +237,7 @@ TEST(SssAdaptiveMoving, LosesLittleOfItsFirstFramesAtRestToTaaAndGainsByItThen) 
         const Capture capture = captured(still.light, frame);
         const double own = error(alone.run(capture).images.at("color"), reference),
                      with_taa = error(followed.run(capture).images.at("color"), reference);
-        EXPECT_LT(decibels(own, with_taa), frame < 18 ? 1.5 : 0) << "frame " << frame;
+        EXPECT_LT(decibels(own, with_taa), frame < 16 ? 0.3 : 0) << "frame " << frame;
     }
 }
 

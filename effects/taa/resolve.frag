@@ -145,9 +145,10 @@ const float kLag = 0.002;
 const float kLagOfContrast = 0.01;
 const float kNearPx = 18.0;
 
-// The step before averages its light itself, so that each frame has less error than those before it: history counts as this
-// part of the frames that it has averaged, where no contrast is there to smooth. With all of them taa lost 0.4 dB.
+// The step before averages its light itself, and in its first frames each has less error than those before it: history counts
+// as this part of the frames that it has averaged, and less until they are so many. With all of them taa lost 2.6 dB at rest.
 const float kPartOfAveraged = 0.25;
+const float kSettledFrames = 25.0;
 const float kFramesOfContrast = 60.0;  // at a contrast of 1; grows with its square, or noise would pass for contrast
 
 vec3 change_at(vec2 place) { return textureLod(light_change, place * light_change_size.zw, 0.0).rgb; }
@@ -175,11 +176,17 @@ float contrast_of(Samples samples) {
     return sqrt(max(squares / count - mean * mean, 0.0)) / max(mean, 1e-10);
 }
 
-// The most frames of history that count.
-float frames_in_change(Samples samples, vec4 change) {
-    float contrast = contrast_of(samples);
+// The most frames of history that count where the picture moved by `motion_px`.
+float frames_in_change(Samples samples, vec4 change, vec2 motion_px) {
+    // Outlines become smooth by samples that lie elsewhere than in the frame before.
+    bool moved = motion_px != vec2(0.0), averages = change.a > 0.0;
+    bool smooths = moved || !averages || camera.jitter_px != camera.prev_jitter_px;
+    float contrast = smooths ? contrast_of(samples) : 0.0;
     float frames = (kLag + kLagOfContrast * contrast) / max(greatest_change(change.rgb), 1e-6);
-    return change.a > 0.0 ? min(frames, kPartOfAveraged * change.a + kFramesOfContrast * contrast * contrast) : frames;
+    if (!averages) return frames;
+    // History between pixels is softer than the frame: behind an average that moves along, a pan lost 3 dB to it.
+    float averaged = moved ? 0.0 : kPartOfAveraged * change.a * min(change.a / kSettledFrames, 1.0);
+    return min(frames, averaged + kFramesOfContrast * contrast * contrast);
 }
 #endif
 
@@ -195,7 +202,7 @@ void main() {
     vec4 change = texelFetch(light_change, p, 0);
     if (frames > 0.0 && is_light(change)) {
         history.rgb *= change.rgb;
-        frames = min(frames, frames_in_change(samples, change));
+        frames = min(frames, frames_in_change(samples, change, reprojected.xy));
     }
 #endif
 #if REJECTION != REJECTION_NONE
