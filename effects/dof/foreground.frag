@@ -68,7 +68,7 @@ void main() {
     if (over.opacity > 0.0) {
         int level = level_for(max(front.reach_px, 1.0), around_coc);
         Strongest tap = strongest_tap(Point(center, own, visible_coc, front.reach_px, kAll, kNotAsked), level);
-        vec2 offset_px = tap.weight > 0.0 ? pixel_of(tap, center, level) - center : vec2(0.0);
-        out_sent_from = pack_sent(dot(over.color.rgb, vec3(1.0)), offset_px);
+        if (tap.weight > 0.0) out_sent_from = pack_sent(dot(over.color.rgb, vec3(1.0)), pixel_of(tap, center, level) - center);
+        else out_foreground = vec4(0.0);  // of a rim, too thin to say where it comes from
     }
 }

@@ -13,7 +13,10 @@ vec4 veil_of(ivec2 p) {
     return vec4(min(over.rgb, max(color_of(p).rgb, vec3(0.0))), over.a);
 }
 
-vec4 without(vec4 over, ivec2 p) { return (color_of(p) - over) / (1.0 - over.a); }
+vec4 without(vec4 over, ivec2 p) {
+    vec4 all = color_of(p);
+    return (all - vec4(over.rgb, alpha_of_light(over.a, all.a))) / (1.0 - over.a);
+}
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy), behind = covered_by_light(p);

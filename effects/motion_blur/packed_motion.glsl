@@ -19,7 +19,11 @@ uvec2 packed_path_at(ivec2 p) { return texelFetch(motion, shown_at(p), 0).xy; }
 vec4 path_of(ivec2 p) { return unpack_path(packed_path_at(p)); }
 
 #ifdef SHARES_PIXELS
-vec2 depth_and_share(ivec2 p) { return texelFetch(motion_share, shown_at(p), 0).xy; }
+vec2 depth_and_share(ivec2 p) {
+    ivec2 shown = shown_at(p);
+    vec2 known = texelFetch(motion_share, shown, 0).xy;
+    return vec2(known.x, shown == p ? known.y : 1.0);
+}
 #else
 vec2 depth_and_share(ivec2 p) { return vec2(texelFetch(depth, shown_at(p), 0).r, 1.0); }
 #endif

@@ -241,6 +241,8 @@ private:
                                               ", whose values cannot be mixed");
                 continue;
             }
+            if (is_step_role(output.role) && !find_role(output.role)->filterable)
+                continue;  // places do not mix
             InputSource source = nearest_source(output.role, index);
             for (const InputSpec& input : step.manifest->inputs)
                 if (input.role == output.role && input.frame == 0 && input.layer < 0 && !input.from_capture)
@@ -335,8 +337,11 @@ private:
         for (const InputSpec& input : step.manifest->inputs) {
             const bool of_capture = input.frame != 0 || input.from_capture || input.layer >= 0;
             const std::size_t end = is_step_role(input.role) ? end_of_color(step) : pipeline_.steps.size();
+            // Light in front is a part of the color that its step makes, and of no later one.
+            const bool is_part = input.role == kForegroundRole || input.role == kForegroundPlaceRole;
             const InputSource source =
-                of_capture ? InputSource{-1, input.image_role()} : nearest_source(input.role, end);
+                of_capture ? InputSource{-1, input.image_role()}
+                           : nearest_source(input.role, end, is_part && end > 0 ? end - 1 : 0);
             step.inputs.try_emplace(input.name, source);
             // Who can do without colour does not build on it: it may look at it to the side of the display.
             if (input.role == kColorRole && !input.optional && pipeline_.writes_role(kDisplayRole))
@@ -359,9 +364,9 @@ private:
         return pipeline_.steps.size();
     }
 
-    /// For the `index`-th step.
-    InputSource nearest_source(const std::string& role, std::size_t index) const {
-        for (int i = int(index) - 1; i >= 0; --i)
+    /// For the `index`-th step, from the steps from `first` on.
+    InputSource nearest_source(const std::string& role, std::size_t index, std::size_t first = 0) const {
+        for (int i = int(index) - 1; i >= int(first); --i)
             for (const OutputSpec& output : pipeline_.steps[std::size_t(i)].manifest->outputs)
                 if (output.role == role) return {i, output.name};
         return {-1, role};

@@ -26,7 +26,11 @@ TEST(StepRoles, ComeWithTheColorThatHasTheirLight) {
         return Bound(none, look_of(steps)).pipeline().steps.back().inputs.at("foreground").step;
     };
     EXPECT_EQ(step_of(R"({"effect": "dof"}, {"effect": "motion_blur"})"), 0);
-    EXPECT_EQ(step_of(R"({"effect": "dof"}, {"effect": "bloom"}, {"effect": "motion_blur"})"), 0);
+    EXPECT_EQ(step_of(R"({"effect": "dof"}, {"effect": "color_grade"}, {"effect": "motion_blur"})"), -1);
+    EXPECT_EQ(
+        step_of(
+            R"({"effect": "dof"}, {"effect": "motion_blur"}, {"name": "again", "effect": "motion_blur"})"),
+        -1);
     EXPECT_EQ(step_of(R"({"effect": "dof"}, {"effect": "motion_blur", "in": {"color": "capture.color"}})"),
               -1);
     EXPECT_EQ(
