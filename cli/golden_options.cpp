@@ -167,7 +167,7 @@ std::string approver_of(const GoldenOptions& options, const fs::path& folder) {
         if (name.empty() && user) name = user;
         const std::string address =
             has_approvers(folder) ? line_of_git(folder, {"config", "user.email"}) : "";
-        if (!address.empty()) name += " <" + address + ">";
+        if (!address.empty()) name += (name.empty() ? "<" : " <") + address + ">";
     }
     if (const std::string fault = fault_of_name(name); !fault.empty())
         throw CodedError(kCompareUsage, "the approver's name " + fault +

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -157,6 +158,20 @@ INSTANTIATE_TEST_SUITE_P(All, DofSettings,
                                          R"("blades": 7, "curvature": 0.3, "rotation": 17)",
                                          R"("quality": "fast")", R"("quality": "exact")",
                                          R"("highlights": "gather")"));
+
+/// Its disc is wider than the surroundings that its brightness is compared with.
+TEST(Dof, ALampKeepsItsLightInADiscOfAnySize) {
+    for (const auto& [size, radius_px] : {std::pair(64, 20.0), {341, 150.0}}) {
+        Capture capture = make_capture({.width = size,
+                                        .height = size,
+                                        .background_depth_m = kApertureFocusM,
+                                        .points = {{size / 2, size / 2, kPointIntensity}}});
+        capture.images["depth"].at(size / 2, size / 2, 0) = kApertureNearM;
+        const Image out =
+            through_aperture("dof", capture, radius_px, R"("blades": 0, "max_coc_radius": 256)");
+        EXPECT_NEAR(sum_of(out) / kPointIntensity, 1, 0.03) << radius_px;
+    }
+}
 
 TEST(Dof, CopiesPixelsInFocusBitForBit) {
     expect_picture_in_focus_is_copied(kEffect, 1.0f);

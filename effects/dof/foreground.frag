@@ -49,7 +49,7 @@ vec2 pixel_of(Strongest tap, vec2 center_px, int level) {
     return vec2(nearest) + 0.5;
 }
 
-// As in compose.frag, what lies in front alone.
+// Gathers the light in front as compose.frag does, and finds where most of it comes from.
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
 #ifdef SILHOUETTES

@@ -5,7 +5,7 @@
 #include "sent_from.glsl"
 
 #ifdef SILHOUETTES
-// To a pixel that shows a surface of this CoC radius, as what the visible surface hides has.
+// The offset to a pixel whose visible surface has this CoC radius: that of the surface which is hidden at p.
 ivec2 likest(ivec2 p, float coc) {
     const ivec2 kWays[8] = ivec2[](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1), ivec2(1, 1), ivec2(-1, -1), ivec2(1, -1), ivec2(-1, 1));
     const float kUnlikePerPx = 0.02;

@@ -17,7 +17,7 @@ Scattered scattered_at(ivec2 p) {
     return Scattered(clamp(pixel_coc - source_coc, 0.0, 1.0), clamp(source_coc - pixel_coc, 0.0, 1.0), density);
 }
 
-// Of what is in front of the pixel, or at its depth.
+// Density of light in front of what the pixel shows, or at its depth.
 float density_before(ivec2 p) {
     Scattered here = scattered_at(p);
     return here.density * (here.in_front + (1.0 - here.in_front - here.behind) * texelFetch(veil, p, 0).r);

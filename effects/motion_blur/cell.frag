@@ -31,7 +31,7 @@ void main() {
             }
 #endif
 #ifdef HAS_FOREGROUND_PLACE
-            // What the lens spreads here moves over the cell, too, and so does what it covers.
+            // What the lens spreads here moves over the cell, too. What it covers widens the range alone: its own tiles bring its path.
             ivec2 sender = sender_of(p);
             uvec2 sent = packed_path_at(sender);
             ivec4 sent_numbers = packed_numbers(sent), covered = packed_numbers(packed_path_at(covered_by_light(p)));

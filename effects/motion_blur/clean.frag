@@ -7,7 +7,7 @@ const float kOpaque = 0.98;
 
 vec4 color_of(ivec2 p) { return texelFetch(color, p, 0); }
 
-// A step between the lens and this one may have changed `color`: no more is taken from it than it has.
+// `in` may name a `color` that a later step has changed: no more is taken from it than it has.
 vec4 veil_of(ivec2 p) {
     vec4 over = texelFetch(foreground, p, 0);
     return vec4(min(over.rgb, max(color_of(p).rgb, vec3(0.0))), over.a);

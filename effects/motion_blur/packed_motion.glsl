@@ -5,7 +5,7 @@
 #include "foreground.glsl"
 #endif
 
-// Under light of the lens: of the surface that it covers.
+// Where light of the lens covers a surface, a pixel that shows that surface.
 ivec2 shown_at(ivec2 p) {
 #ifdef VEILED
     return covered_by_light(p);

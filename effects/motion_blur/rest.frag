@@ -30,6 +30,12 @@ void main() {
             ivec2 p = min(corner + ivec2(x, y), frame.size - 1), sender = sender_of(p);
             is_veiled = is_veiled || sender != p;
             bits |= floatBitsToUint(texelFetch(velocity, sender, 0).xy);
+#if defined(HAS_VELOCITY_NEXT) && CURVE
+            bits |= floatBitsToUint(texelFetch(velocity_next, sender, 0).xy);
+#endif
+#ifdef SHARES_PIXELS
+            bits |= floatBitsToUint(texelFetch(first_velocity, sender, 0).xy);
+#endif
         }
     out_tile_veiled = is_veiled ? 1.0 : 0.0;
 #endif

@@ -30,7 +30,8 @@ vec4 under_veil(vec4 light, vec2 from, vec2 point, vec4 sender, vec4 furthest, f
     const float kOnePlacePx = 0.5;
     float sender_way_px = length(way_px(sender, t)), sender_miss_px = kSenderMissPx + kSenderMissPerPx * sender_way_px;
     Veil by_sender = veil_by(point, sender, t, sender_miss_px), by_furthest = veil_by(point, furthest, t, kMissPx);
-    Veil over = Veil(texelFetch(veil, texel_at(point), 0), point, sender_way_px < sender_miss_px);
+    vec4 here = texelFetch(veil, texel_at(point), 0);
+    Veil over = Veil(here, point, is_light(here) && sender_way_px < sender_miss_px);
     if (by_furthest.comes) over = by_furthest;
     if (by_sender.comes) over = by_sender;
     if (!over.comes) return from != kNowhere && !is_light(texelFetch(veil, texel_at(from), 0)) ? light_at(color, from) : light;

@@ -13,7 +13,7 @@ const float kMostFrames = 4096.0;
 const float kMostLeftOver = 0.5;
 
 // Where light moves, the average lags by more than a frame of many samples is noisy: one of so many counts as much as all before
-// it, but no more than the second constant times the part by which the blurred light changed. Without, an ear whose light moves
+// it, but no more than kWeightOfChange times the part by which the blurred light changed. Without this, an ear whose light moves
 // lost 9 dB.
 const float kSamplesOfHalf = 40.0;
 const float kWeightOfChange = 8.0;
@@ -28,7 +28,7 @@ struct Guided {
 // The light of samples that find this share of the profile, of which filled() makes `light`.
 vec3 unfilled(vec3 light, Gathered sums) { return light * filling(sums.share / sums.whole) * sums.whole; }
 
-// What the average of the frame before is in this frame's light, of which `now` is. change: of the blurred light, as a part of it.
+// What the average of the frame before is in this frame's light, of which `now` is. `change`: change of the blurred light, divided by the greater of both values.
 Gathered carried(ivec2 p, ivec2 q, Gathered now, out float change) {
     Gathered then = Gathered(texelFetch(guided_prev, q, 0).rgb, texelFetch(guided_share_prev, q, 0).rgb,
                              texelFetch(guided_whole_prev, q, 0).rgb);

@@ -88,9 +88,9 @@ std::optional<GoldenCase> parse_effect_case(const Node& node, const fs::path& fi
     for (const std::string& part : {effect, result.stem})
         if (!is_case_name(part))
             diagnostics.error({file.string()},
-                              fmt::format("a case's name begins its files' names: letters, digits, '_' and "
-                                          "'-', not '{}'; rename it",
-                                          part));
+                              fmt::format("'{}' has other characters than letters, digits, '_' and '-', or "
+                                          "begins with '-': rename the {}",
+                                          part, part == effect ? "effect's folder" : "file"));
     result.goldens = file.parent_path();
     result.folder = file.parent_path();
     read_golden_case({node, effect_case_block()}, root, result, diagnostics);

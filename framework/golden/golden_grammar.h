@@ -7,7 +7,7 @@
 
 namespace aftershade {
 
-/// What can begin the names of a case's images, and stand in a glob, a comment and a command as itself.
+/// Whether it can begin the names of a case's images, and means itself in a glob, a comment and a command.
 bool is_case_name(const std::string& name);
 
 /// golden.json

@@ -103,7 +103,8 @@ const char* remedy_of(const std::string& fault) {
         return "put it there again, or remove its sidecar and approve a new one";
     if (has("401") || has("403"))
         return "check ~/.netrc, rclone.conf, or AFTERSHADE_STORE_TOKEN with AFTERSHADE_STORE_TOKEN_URL";
-    if (has("SSL")) return "check its certificate, or set CURL_CA_BUNDLE to the file of its authority";
+    if (has("certificate"))
+        return "check its certificate, or set CURL_CA_BUNDLE to the file of its authority";
     if (has("timed out") || has("time limit") || has("too slow"))
         return "check the store, or allow more time with --timeout";
     return "check the address in the suite's 'store', and that it can be reached from here";
@@ -112,7 +113,9 @@ const char* remedy_of(const std::string& fault) {
 /// Whether curl would wait as long for each other image of the store.
 bool is_of_all_images(const std::string& fault) {
     const auto has = [&](const char* words) { return fault.find(words) != fault.npos; };
-    return has("onnect to") || has("resolve host") || has("timed out") || has("too slow") || has("SSL");
+    return has("onnect to") || has("resolve host") || has("Resolving timed out") ||
+           has("onnection timed out") || has("connection timeout") || has("certificate") || has("with 0 ") ||
+           has("too slow");
 }
 
 /// Runs it with each line that it prints, and returns why it failed; "" where it did not.
@@ -198,8 +201,9 @@ GoldenStore::Faults GoldenStore::transfer(Direction direction, const std::set<st
     const auto second = std::next(digests.begin());
     Faults faults = by_curl(direction, {digests.begin(), second}, folder, interrupt);
     if (!faults.empty() && is_of_all_images(faults.begin()->second)) {
-        const std::string fault = faults.begin()->second;
-        for (const std::string& digest : digests) faults[digest] = fault;
+        const auto& [first, fault] = *faults.begin();
+        const std::string of_others = "not tried, since " + stored_name(first) + " failed: " + fault;
+        for (const std::string& digest : digests) faults.try_emplace(digest, of_others);
     } else if (second != digests.end()) {
         faults.merge(by_curl(direction, {second, digests.end()}, folder, interrupt));
     }
@@ -277,7 +281,7 @@ GoldenStore::Faults GoldenStore::by_rclone(Direction direction, const std::set<s
     std::string names;
     for (const std::string& digest : digests) names += stored_name(digest) + "\n";
     write_text_file(list, names);
-    // Of silence, as curl's speed-time.
+    // rclone's --timeout limits silence, as curl's speed-time does.
     const auto silence = std::min<std::chrono::duration<double>>(timeout_, std::chrono::seconds(30));
     const std::string timeout = fmt::format("{:.3f}s", silence.count());
     WorkerCommand command;

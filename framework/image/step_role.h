@@ -17,7 +17,8 @@ inline constexpr std::string_view kForegroundRole = "foreground";
 /// behind the one that the pixel shows (B, A), if that surface is seen; else 0.
 inline constexpr std::string_view kForegroundPlaceRole = "foreground_place";
 
-/// What an image of such a role holds where no step has made one is its `outside`.
+/// Whether steps alone make images of this role. Where no step has made one, its pixels are the role's
+/// `outside`.
 bool is_step_role(std::string_view name);
 
 }  // namespace aftershade

@@ -241,8 +241,6 @@ private:
                                               ", whose values cannot be mixed");
                 continue;
             }
-            if (is_step_role(output.role) && !find_role(output.role)->filterable)
-                continue;  // places do not mix
             InputSource source = nearest_source(output.role, index);
             for (const InputSpec& input : step.manifest->inputs)
                 if (input.role == output.role && input.frame == 0 && input.layer < 0 && !input.from_capture)

@@ -14,6 +14,7 @@
 #include "framework/document/units.h"
 #include "framework/graph/rehearsal.h"
 #include "framework/image/role.h"
+#include "framework/image/step_role.h"
 #include "framework/render/step_build.h"
 
 namespace aftershade {
@@ -365,8 +366,9 @@ void GraphBuilder::add_mix(StepBuild& build) {
         const auto mask_image = [&](const RoleId& role) {
             return on_grid(import(role), {-1, role.is_coverage() ? kMaskRole : role.name()});
         };
+        const auto role = find_role(build.manifest().find_output(name)->role);
+        if (is_step_role(role->name) && !role->filterable) defines.emplace_back("WHOLE_OR_NOTHING");
         if (source.output.empty()) {
-            const auto role = find_role(build.manifest().find_output(name)->role);
             defines.emplace_back(role->outside == 0 ? "NOTHING_IS_0" : "NOTHING_IS_1");
         } else {
             const graph::TextureHandle before = on_grid(resolve(source), source);

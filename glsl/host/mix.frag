@@ -1,7 +1,7 @@
 #version 450 core
 // A step's "mix" and "mask": the image before the step and the image that it made, by amount * mask. The host
 // defines MASK_IMAGE, MASK_FILE or MASK_OBJECTS; and NOTHING_IS_0 or
-// NOTHING_IS_1 where no step has made the image before, and no capture can.
+// NOTHING_IS_1 where no step has made the image before, and no capture can; WHOLE_OR_NOTHING for values that have no mean.
 #if !defined(NOTHING_IS_0) && !defined(NOTHING_IS_1)
 layout(binding = 0) uniform sampler2D before;
 #endif
@@ -56,6 +56,10 @@ void main() {
     vec4 a = texelFetch(before, pixel, 0);
 #endif
     vec4 b = texelFetch(after, pixel, 0);
+#ifdef WHOLE_OR_NOTHING
+    result = weight >= 1.0 ? b : a;  // places do not mix
+#else
     // The ends are exact, and infinite depth stays what it is: inf - inf would be NaN.
     result = weight <= 0.0 ? a : weight >= 1.0 ? b : mix(a, b, weight);
+#endif
 }

@@ -98,6 +98,7 @@ class Review {
     this.decisions = isServed ? new ServedDecisions() : new OwnDecisions();
     this.rows = new Map();
     this.history = []; // lists of names, of this page
+    this.pending = new Set(); // names whose decision has no answer yet: a second click is about the same state
   }
   async start() {
     document.getElementById("head").append(this.bar());
@@ -108,7 +109,7 @@ class Review {
   /** Shows what is decided; without `always` only where something is new, since hundreds of rows take long. */
   async refreshed(always = true) {
     try {
-      const isNew = await this.decisions.load();
+      const isNew = (await this.decisions.load()) || this.isAlone;
       if (this.isAlone) this.say("");
       this.isAlone = false;
       if (isNew || always) this.show();
@@ -128,6 +129,7 @@ class Review {
   }
   async decide(tests, decision, note = "") {
     const wishes = tests.map((test) => ({ case: test.name, decision, note }));
+    for (const { name } of tests) this.pending.add(name);
     try {
       await this.decisions.decide(wishes, this.byName);
       if (decision !== "none") this.history.push(tests);
@@ -136,11 +138,12 @@ class Review {
       const all = error.answer?.conflicts ?? [error.message];
       this.say(["Nothing was changed.", ...all, "Look again, then decide."].join("\n"), true);
     }
+    for (const { name } of tests) this.pending.delete(name);
     this.show();
   }
   /** The open cases of the list are approved; a decision that stands is left alone. */
   approveOpen(tests) {
-    const open = tests.filter((test) => test.approve && !this.decisionOf(test));
+    const open = tests.filter((test) => test.approve && !this.decisionOf(test) && !this.pending.has(test.name));
     if (open.length === 0) return tell("Every case of this cause is decided");
     return this.decide(open, "approve");
   }
@@ -277,13 +280,13 @@ class Review {
   act(test, decision) {
     const { note, buttons } = this.rows.get(test.name),
       words = note.value.trim();
+    if (this.pending.has(test.name)) return tell("Its decision is on its way");
     if (buttons.find((button) => button.dataset.decision === decision).disabled)
       return tell("It is decided; take the decision back first");
     if (decision === "reject" && !words) {
       note.focus();
       return tell("Write why, then reject");
     }
-    for (const button of buttons) button.disabled = true; // until the answer: a second click is about the same state
     return this.decide([test], decision, decision === "none" ? "" : words);
   }
   /** A key of the page. False where there is none. */
