@@ -33,6 +33,9 @@ std::string_view kind_name(Node::Kind kind) {
 
 namespace {
 
+/// Each moves the members behind it.
+constexpr int kMostEqualKeys = 100;
+
 /// Counts how far the lexer has read.
 class CountingIterator {
 public:
@@ -116,6 +119,11 @@ public:
                 return false;
             }
             diagnostics_.warning(at, message + " (the last one counts)");
+            if (++equal_keys_ > kMostEqualKeys) {
+                diagnostics_.error(at, "more than " + std::to_string(kMostEqualKeys) +
+                                           " keys occur twice in their objects (remove the first of each)");
+                return false;
+            }
             object.members.erase(first);
         }
         object.members.push_back({value, at, {}});
@@ -242,6 +250,7 @@ private:
     const std::string& file_;
     Diagnostics& diagnostics_;
     const SameKeys same_keys_;
+    int equal_keys_ = 0;
     std::vector<std::size_t> line_starts_{0};
     const char* reached_ = nullptr;
     Node root_;

@@ -50,6 +50,7 @@ inline constexpr int kMaxDocumentDepth = 64;
 inline constexpr std::uintmax_t kMaxDocumentBytes = 1024 * 1024;
 
 /// What becomes of a key that an object has twice: a fault, or the last value counts and a warning is given.
+/// More than 100 such keys are a fault.
 enum class SameKeys { refuse, keep_last };
 
 /// nullopt after a syntax fault, which is the one error reported then.

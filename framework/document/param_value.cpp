@@ -123,7 +123,7 @@ std::vector<SweepValue> AbstractParamType::sweep(const ParamSpec& spec) const {
 
 double scaled_px(const ParamSpec& spec, double number, double factor) {
     if (!spec.type->is_integer) return number * factor;
-    const double rounded = std::clamp(std::round(number * factor), -2147483647.0, 2147483647.0);
+    const double rounded = std::clamp(std::round(number * factor), -2147483648.0, 2147483647.0);
     return spec.min ? std::max(rounded, std::ceil(*spec.min)) : rounded;
 }
 

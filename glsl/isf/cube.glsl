@@ -12,6 +12,10 @@ vec4 isf_sample(sampler2D right, sampler2D left, sampler2D top, sampler2D bottom
     vec2 on_face = 0.5 + 0.5 * vec2(sign(at.z) * at.x, -at.y) / size.z;
     return at.z > 0.0 ? textureLod(front, on_face, 0.0) : textureLod(back, on_face, 0.0);
 }
+vec4 isf_sample(sampler2D right, sampler2D left, sampler2D top, sampler2D bottom, sampler2D front, sampler2D back, vec3 at,
+                float bias) {
+    return isf_sample(right, left, top, bottom, front, back, at);
+}
 vec4 isf_sample_level(sampler2D right, sampler2D left, sampler2D top, sampler2D bottom, sampler2D front, sampler2D back, vec3 at,
                       float level) {
     return isf_sample(right, left, top, bottom, front, back, at);

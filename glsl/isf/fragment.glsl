@@ -9,7 +9,6 @@ vec2 isf_FragNormCoord = isf_norm;
 #else
 vec2 isf_FragNormCoord = isf_FragCoord.xy / ISF_SIZE;
 #endif
-bool isf_is_gone = false;
 // What an output of the file's own holds.
 vec4 isf_color(vec4 color) { return color; }
 vec4 isf_color(vec3 color) { return vec4(color, 1.0); }

@@ -9,6 +9,8 @@
 #define texture isf_sample
 #define texture2D isf_sample
 #define textureCube isf_sample
+#define textureCubeLod isf_sample_level
+#define textureCubeLodEXT isf_sample_level
 #define texture2DRect isf_sample_pixel
 #define texture2DLod isf_sample_level
 #define texture2DLodEXT isf_sample_level

@@ -5,7 +5,7 @@
 #define isf_FragNormCoord isf_norm
 #define vv_FragNormCoord isf_norm
 #define vv_vertShaderInit isf_vertShaderInit
-// Of GLSL 1.20's own pipeline, whose quad is the picture.
+// The pipeline of GLSL 1.20, whose quad is the picture.
 #define gl_Vertex isf_vertex()
 #define gl_MultiTexCoord0 vec4(isf_corner, 0.0, 1.0)
 #define gl_ModelViewProjectionMatrix mat4(1.0)

@@ -16,7 +16,6 @@ protected:
         write_filter("x.fs", members, shader);
         return pixel(step("x.fs"), 0, 0);
     }
-    const std::vector<float> nothing_ = std::vector<float>(4, 0.0f);
 };
 
 TEST_F(IsfHosts, TakeACommaBeforeABracketAndTheLastOfTwoEqualKeys) {
@@ -74,17 +73,51 @@ TEST_F(IsfHosts, HaveAnOutputThatNoFileDeclares) {
               (std::vector<float>{0.5f / 64, 7.5f / 64, 0, 1}));
 }
 
+TEST_F(IsfHosts, TakeTheirAliasesAsNamesOfParametersLocalsAndMembers) {
+    EXPECT_EQ(first("", R"(struct Part { vec4 isf_FragColor; };
+void mainImage(out vec4 isf_FragColor, in vec2 isf_FragCoord) { isf_FragColor = vec4(isf_FragCoord, 0.0, 1.0); }
+#ifdef ABSENT
+vec4 half_of(Part part) {
+#else
+vec4 half_of(const Part part) {
+#endif
+    vec4 isf_FragColor = 0.5 * part.isf_FragColor;
+    return isf_FragColor;
+}
+void main() {
+    Part part;
+    mainImage(part.isf_FragColor, gl_FragCoord.xy / 32.0);
+    gl_FragColor = half_of(part);
+}
+)"),
+              (std::vector<float>{0.5f / 64, 7.5f / 64, 0, 0.5f}));
+}
+
+TEST_F(IsfHosts, KeepConstantsThatOnlyCompare) {
+    EXPECT_EQ(first("", R"(const bool late = TIME >= 1.0;
+const int kSize = 3 >= 2 ? 4 : 2;
+const float parts[2] = float[2](RENDERSIZE.x, 0.5), part = parts[1];
+float all[kSize];
+void main() { all[3] = late ? 1.0 : part; gl_FragColor = vec4(all[3]); }
+)"),
+              std::vector<float>(4, 0.5f));
+}
+
 TEST_F(IsfHosts, LetAVaryingBeThatNothingReads) {
-    EXPECT_EQ(
-        first("", "varying vec2 surfacePosition, other[2];\nvoid main() { gl_FragColor = vec4(0.5); }\n"),
-        std::vector<float>(4, 0.5f));
+    EXPECT_EQ(first("",
+                    "#define N 2\nvarying vec2 surfacePosition, other[N];\n"
+                    "void main() { gl_FragColor = vec4(0.25 * float(N)); }\n"),
+              std::vector<float>(4, 0.5f));
 }
 
 TEST_F(IsfHosts, LeaveNothingWhereAShaderDiscards) {
     write_filter("x.fs", R"("PASSES": [{"TARGET": "a"}, {}])",
                  R"(float part(float x) { if (x < 0.25) discard; return x; }
 void main() {
-    if (isf_FragNormCoord.x > 0.75) { discard; }
+    for (;;) {
+        if (isf_FragNormCoord.x > 0.75) discard;
+        if (isf_FragNormCoord.x <= 0.75) break;
+    }
     gl_FragColor = PASSINDEX == 0 ? vec4(part(isf_FragNormCoord.x)) : IMG_THIS_PIXEL(a);
 }
 )");
@@ -119,6 +152,23 @@ TEST_F(IsfHosts, DrawWhereAVertexShaderPlacesItsCorners) {
         }
 }
 
+TEST_F(IsfHosts, FindCoordinatesThatAVertexShaderSetsInEveryWay) {
+    for (const std::string turn :
+         {"void turn(inout vec2 at) { at = at.yx; }\n", "#define turn(at) at = at.yx\n"})
+        for (const std::string call : {"turn(isf_FragNormCoord);", "TURN", "isf_FragNormCoord.x++;"}) {
+            write_filter("x.fs", "",
+                         "void main() { gl_FragColor = vec4(isf_FragNormCoord / 2.0, 0.0, 1.0); }\n");
+            const std::string macro = call == "TURN" ? "#define TURN turn(isf_FragNormCoord);\n" : "";
+            write_text(folder_ / "filters/x.vs",
+                       turn + macro + "void main() {\n isf_vertShaderInit();\n " + call + "\n}\n");
+            const bool is_turned = call != "isf_FragNormCoord.x++;";
+            const std::vector<float> found = pixel(step("x.fs"), 3, 5);
+            EXPECT_NEAR(found[0], is_turned ? 2.5 / kHeight / 2 : (1 + 3.5 / kWidth) / 2, 1e-5)
+                << turn << call;
+            EXPECT_NEAR(found[1], is_turned ? 3.5 / kWidth / 2 : 2.5 / kHeight / 2, 1e-5) << turn << call;
+        }
+}
+
 /// Red: the face; green and blue: right and down on it.
 TEST_F(IsfHosts, SampleCubeMaps) {
     std::string paths;
@@ -147,7 +197,8 @@ TEST_F(IsfHosts, SampleCubeMaps) {
                                            {"0.25, -1.0, -0.25", 3, 0.25, 0.25},
                                            {"-0.25, 0.25, 1.0", 4, -0.25, -0.25},
                                            {"-0.25, 0.25, -1.0", 5, 0.25, -0.25}})
-        for (const std::string read : {"textureCube(sky, d)", "texture(sky, d)", "textureLod(sky, d, 0.0)"}) {
+        for (const std::string read : {"textureCube(sky, d)", "texture(sky, d)", "textureLod(sky, d, 0.0)",
+                                       "textureCube(sky, d, 1.0)", "textureCubeLod(sky, d, 0.0)"}) {
             const std::vector<float> found =
                 first(members, "uniform samplerCube sky;\nvoid main() { vec3 d = 2.0 * vec3(" + c.at +
                                    "); gl_FragColor = " + read + "; }\n");

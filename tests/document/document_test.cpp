@@ -131,6 +131,23 @@ TEST(Document, RefusesAKeyThatStandsTwice) {
     EXPECT_EQ(faults(R"({"a":1, "\u0061":2})"), escaped);
 }
 
+TEST(Document, KeepsTheLastOfAtMostAHundredEqualKeys) {
+    for (const int count : {100, 101}) {
+        std::string text = "{\"a\": 0";
+        for (int i = 1; i <= count; ++i) text += ",\n\"a\": " + std::to_string(i);
+        Diagnostics diagnostics;
+        const auto document = parse_document(text + "}", "f", diagnostics, SameKeys::keep_last);
+        ASSERT_EQ(document.has_value(), count == 100);
+        EXPECT_EQ(diagnostics.error_count(), count - 100);
+        if (!document) {
+            EXPECT_EQ(diagnostics.all().back().place.line, 102);
+            continue;
+        }
+        ASSERT_EQ(document->members.size(), 1U);
+        EXPECT_EQ(document->members[0].value.integer, 100);
+    }
+}
+
 TEST(Document, NestsUpToSixtyFourLevels) {
     const auto arrays = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
     EXPECT_EQ(faults(arrays(64)), Lines{});

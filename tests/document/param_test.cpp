@@ -85,9 +85,11 @@ TEST(ParamValue, OfAnIntIsAWholeNumberInThirtyTwoBits) {
     EXPECT_EQ(value_faults(kTaps, "-1"), Lines{"doc.json:1:1: error: p: -1 is below the minimum 0"});
     EXPECT_EQ(value_faults(kTaps, "514"), Lines{"doc.json:1:1: error: p: 514 is above the maximum 513"});
     const std::string wide = R"({"type": "int", "default": 0, "doc": "."})";
-    EXPECT_EQ(value_of(wide, "-2147483647"), ParamValue(std::int64_t(-2147483647)));
+    EXPECT_EQ(value_of(wide, "-2147483648"), ParamValue(std::int64_t(-2147483648)));
     EXPECT_EQ(value_faults(wide, "2147483648"),
               Lines{"doc.json:1:1: error: p: 2147483648 does not fit 32 bits"});
+    EXPECT_EQ(value_faults(wide, "-2147483649"),
+              Lines{"doc.json:1:1: error: p: -2147483649 does not fit 32 bits"});
     EXPECT_EQ(value_faults(wide, "\"many\""), Lines{"doc.json:1:1: error: p: 'many' is not a number"});
 }
 

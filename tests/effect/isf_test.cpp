@@ -74,6 +74,58 @@ TEST(IsfInputs, BecomeParametersOfTheirTypes) {
     EXPECT_EQ(param("wave").type, ParamType::file);
 }
 
+TEST(IsfInputs, TakeNumbersAsLabelsNullAsNoListAndAllOf32Bits) {
+    const test::TemporaryFolder folder;
+    const EffectManifest manifest =
+        isf_manifest_of(folder, test::isf_file(R"j("CREDIT": ["me", 1984], "INPUTS": [
+        {"NAME": "side", "TYPE": "long", "VALUES": null, "LABELS": [8, 16]},
+        {"NAME": "least", "TYPE": "long", "VALUES": [0], "DEFAULT": -2147483648, "MIN": -2147483648}])j"));
+    EXPECT_EQ(manifest.find_param("side")->values, (std::vector<std::string>{"8", "16"}));
+    EXPECT_EQ(manifest.find_param("least")->min, -2147483648.0);
+    EXPECT_TRUE(manifest.sources.at(0).ends_with(", me, 1984")) << manifest.sources.at(0);
+}
+
+TEST(IsfInputs, WarnOfNumbersThatAPointDoesNotTake) {
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "x.fs",
+                     test::isf_input("\"NAME\": \"at\", \"TYPE\": \"point2D\", \"DEFAULT\": [1, 2, 3, 4]"));
+    Diagnostics diagnostics;
+    const auto manifest = read_isf_manifest(folder / "x.fs", IsfSpace::display, kIsfGlsl, diagnostics);
+    ASSERT_EQ(diagnostics.all().size(), 1U);
+    EXPECT_EQ(diagnostics.all()[0].place.line, 3);
+    EXPECT_NE(diagnostics.all()[0].message.find("a list of 4, of which the first 2 numbers count"),
+              std::string::npos)
+        << diagnostics.all()[0].message;
+    EXPECT_EQ(manifest.value().find_param("at")->default_value, ParamValue(std::vector<double>{1, 2}));
+}
+
+/// The time once grew with the cube of their number, so that this did not end.
+TEST(IsfInputs, NameThousandsOfEqualLabelsAtOnce) {
+    const test::TemporaryFolder folder;
+    std::string values, labels;
+    for (int i = 0; i < 3000; ++i) {
+        values += (i > 0 ? "," : "") + std::to_string(i);
+        labels += i > 0 ? ",\"\"" : "\"\"";
+    }
+    const EffectManifest manifest = isf_manifest_of(
+        folder, test::isf_file(R"j("INPUTS": [{"NAME": "side", "TYPE": "long", "VALUES": [)j" + values +
+                               R"j(], "LABELS": [)j" + labels + "]}]"));
+    ASSERT_EQ(manifest.find_param("side")->values.size(), 3000U);
+    EXPECT_EQ(manifest.find_param("side")->values[0], "value");
+    EXPECT_EQ(manifest.find_param("side")->values[2999], "value_3000");
+}
+
+TEST(BrokenIsfVertexShader, HasNoNulByte) {
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "x.fs", test::isf_file("\"INPUTS\": []"));
+    test::write_text(folder / "x.vs", std::string("void main() {\n isf_vertShaderInit();\n}\n\0", 40));
+    Diagnostics diagnostics;
+    EXPECT_FALSE(read_isf_manifest(folder / "x.fs", IsfSpace::display, kIsfGlsl, diagnostics));
+    ASSERT_EQ(diagnostics.all().size(), 1U);
+    EXPECT_EQ(diagnostics.all()[0].place.file, (folder / "x.vs").string());
+    EXPECT_EQ(diagnostics.all()[0].place.line, 4);
+}
+
 TEST(IsfPasses, ReadWhatThisFrameHasWrittenAndElseWhatTheLastLeft) {
     const test::TemporaryFolder folder;
     const EffectManifest manifest =

@@ -61,7 +61,7 @@ public:
         if (!value) return std::nullopt;
         if (*value != std::floor(*value))
             return reader.fault(node, format_number(*value) + " is not a whole number");
-        if (std::abs(*value) > 2147483647.0)
+        if (*value < -2147483648.0 || *value > 2147483647.0)
             return reader.fault(node, format_number(*value) + " does not fit 32 bits");
         return std::int64_t(*value);
     }

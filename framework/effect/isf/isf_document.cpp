@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "framework/base/text.h"
@@ -26,12 +25,6 @@ const std::map<std::string, Type>& input_types() {
         {"long", Type::choice}, {"color", Type::color},  {"point2D", Type::point},
         {"event", Type::event}, {"audio", Type::audio},  {"audioFFT", Type::audio}};
     return types;
-}
-
-bool is_glsl_name(const std::string& name) {
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) && !name.starts_with("gl_") &&
-           std::ranges::all_of(name, fits);
 }
 
 /// One line of a text.
@@ -75,12 +68,16 @@ private:
         return node->string;
     }
 
-    /// What people read, of any kind: no picture depends on it.
+    /// "" for other kinds than texts and numbers.
+    static std::string word_of(const Node& node) {
+        return node.is_number() ? format_number(node.number) : node.string;
+    }
+    /// A text for people, of any kind of value: no picture depends on it.
     static std::string words(const Node& object, const char* key) {
         const Node* node = object.find(key);
         if (!node) return "";
-        std::string all = node->is_number() ? format_number(node->number) : node->string;
-        for (const Node& item : node->items) all += (all.empty() ? "" : ", ") + item.string;
+        std::string all = word_of(*node);
+        for (const Node& item : node->items) all += (all.empty() ? "" : ", ") + word_of(item);
         return in_a_line(all);
     }
 
@@ -121,7 +118,7 @@ private:
 
     /// A name that stands for one thing in the shader.
     bool claim(const std::string& name, const std::string& thing, const Place& place) {
-        if (!is_glsl_name(name)) {
+        if (!isf_words::is_name(name)) {
             fault(place,
                   thing + " is called '" + name +
                       "', which is not a name of GLSL: letters, 0-9 and _, not beginning with a digit");
@@ -182,14 +179,16 @@ private:
     void choices(const Node& node, IsfInput& input) {
         const Node* values = node.find("VALUES");
         const Node* labels = node.find("LABELS");
-        for (const Node* list : {values, labels})
-            if (list && !list->is_array())
-                return fault(list->place, "VALUES and LABELS of '" + input.name + "' are lists");
+        for (const Node** list : {&values, &labels}) {
+            if (*list && (*list)->kind == Node::Kind::null) *list = nullptr;
+            if (*list && !(*list)->is_array())
+                return fault((*list)->place, "VALUES and LABELS of '" + input.name + "' are lists");
+        }
         if (!values) {
             // Labels alone are numbered.
             for (std::size_t i = 0; labels && i < labels->items.size(); ++i) {
                 input.values.push_back(int(i));
-                input.labels.push_back(labels->items[i].string);
+                input.labels.push_back(word_of(labels->items[i]));
             }
             return;
         }
@@ -202,9 +201,8 @@ private:
                         (item.is_number() ? ", which " + format_number(item.number) + " is not" : ""));
             const Node* label = labels && i < labels->items.size() ? &labels->items[i] : nullptr;
             input.values.push_back(int(item.number));
-            input.labels.push_back(label && label->is_string()   ? label->string
-                                   : label && label->is_number() ? format_number(label->number)
-                                                                 : format_number(item.number));
+            input.labels.push_back(
+                word_of(label && (label->is_string() || label->is_number()) ? *label : item));
         }
     }
 
@@ -226,7 +224,7 @@ private:
         if (!node || node->kind == Node::Kind::null || input.type == Type::image || input.type == Type::audio)
             return std::nullopt;
         const std::string label = std::string(key) + " of '" + input.name + "' is ";
-        // Limits that hosts cannot read they leave out.
+        // Hosts leave out limits and identities that they cannot read.
         const auto wrong = [&](const std::string& what) -> std::optional<Node> {
             if (std::string_view(key) == "DEFAULT") fault(node->place, label + what);
             else diagnostics_.warning(node->place, label + what + ", and is left out");
@@ -249,7 +247,7 @@ private:
             else if (!value.is_number())
                 return wrong(std::string(kind_name(node->kind)) + ", but a number is needed");
             value.kind = Node::Kind::number;
-            if (input.type == Type::choice && !(std::abs(value.number) <= INT32_MAX))
+            if (input.type == Type::choice && !(value.number >= INT32_MIN && value.number <= INT32_MAX))
                 return wrong(format_number(value.number) + ", which does not fit 32 bits");
             if (input.type == Type::choice && value.number != std::trunc(value.number))
                 diagnostics_.warning(node->place,
@@ -262,7 +260,12 @@ private:
         if (node->is_number()) value.items.assign(size, *node);
         value.kind = Node::Kind::array;
         for (Node& item : value.items) item = as_number(item);
-        if (value.items.size() > size) value.items.resize(size);
+        if (value.items.size() > size) {
+            diagnostics_.warning(node->place, label + "a list of " + std::to_string(value.items.size()) +
+                                                  ", of which the first " + std::to_string(size) +
+                                                  " numbers count (remove the others)");
+            value.items.resize(size);
+        }
         if (size == 4 && value.items.size() == 3) {
             value.items.push_back(value.items.back());
             value.items.back().kind = Node::Kind::number;
@@ -322,6 +325,7 @@ private:
             claim(pass.target, "a TARGET", node.find("TARGET")->place);
         } else if (pass.side[0].empty() && pass.side[1].empty()) {
             std::ranges::copy(first->side, pass.side);
+            std::ranges::copy(first->side_place, pass.side_place);
         }
         file_.passes.push_back(std::move(pass));
     }

@@ -57,6 +57,10 @@ public:
         if (has_vertex()) {
             author_text(file_.vertex_file, file_.written_vertex_text, texts_.vertex());
             effect_.shaders[id_ + ".vert"] = shaders.text("vertex", file_.vertex_file);
+        } else if (is_sparse_) {
+            effect_.shaders[id_ + ".vert"] =
+                "#version 450 core\n#include <pass>\n#include <isf/vertex.glsl>\n"
+                "void isf_main() {}\n#include <isf/vertex_main.glsl>\n";
         }
         return std::move(effect_);
     }
@@ -70,6 +74,8 @@ private:
     }
     std::string stem() const { return file_.path.stem().string(); }
     bool has_vertex() const { return !file_.vertex_file.empty(); }
+    /// Whether its passes draw a quad. A draw without one must write every pixel.
+    bool is_instanced() const { return has_vertex() || is_sparse_; }
     /// A role of a capture whose image is no picture: depth, motion, directions, masks.
     static bool is_data(const std::string& name) {
         const auto role = find_role(name);
@@ -205,8 +211,7 @@ private:
             // Nothing can read what a later pass draws over.
             if (pass.target.empty() && !is_last) continue;
             const std::string texture = texture_name(i);
-            // Corners that the file places leave the rest 0.
-            if (texts_.moves_corners())
+            if (is_sparse_)
                 passes_.push_back(object({{"name", text("clear_" + std::to_string(i))},
                                           {"kind", text("clear")},
                                           {"writes", list_node(pass.place, {text(texture)})},
@@ -267,7 +272,7 @@ private:
                 name += ".prev";
             }
             const bool is_exact = image.is_optional && !find_role(image.role)->filterable;
-            const bool is_pixel = is_alike(pass, image) && !has_own_size(pass) && !has_vertex() &&
+            const bool is_pixel = is_alike(pass, image) && !has_own_size(pass) && !is_instanced() &&
                                   !words_.has_derivative() && texts_.is_read_by_pixel(image.isf_name);
             reads.push_back(is_exact && !is_pixel ? text(name) : read(name, is_pixel ? "pixel" : "linear"));
             const std::string sampler = name.ends_with(".prev") ? image.name + "_prev" : name;
@@ -288,12 +293,12 @@ private:
                                              {"reads", list_node(pass.place, std::move(reads))},
                                              {"writes", list_node(pass.place, {text(target)})},
                                              {"defines", std::move(defines)}});
-        if (!has_vertex()) return node;
+        if (!is_instanced()) return node;
         add_member(node, "vertex", text(id_ + ".vert"));
         add_member(node, "instances",
                    object({{"of", text("quads")},
                            {"count", number_node(pass.place, 1)},
-                           {"covers", bool_node(pass.place, !texts_.moves_corners())}}));
+                           {"covers", bool_node(pass.place, !is_sparse_)}}));
         return node;
     }
 
@@ -330,6 +335,7 @@ private:
     const IsfSpace space_;
     const IsfWords words_;
     const IsfTexts texts_;
+    const bool is_sparse_ = texts_.moves_corners() || texts_.discards();  // pixels that are not drawn are 0
     IsfNames names_;
     std::string output_, nothing_;
     std::vector<Image> images_;

@@ -11,7 +11,6 @@
 #include "framework/effect/glsl_tokens.h"
 #include "framework/effect/isf/isf_document.h"
 #include "framework/effect/isf/isf_text.h"
-#include "framework/effect/manifest/manifest_check.h"
 #include "framework/effect/shader_source.h"
 
 namespace aftershade {
@@ -90,12 +89,13 @@ std::optional<Place> place_of_varying(const IsfFile& file) {
         const bool is_varying = token == "varying" || (token == "in" && depth == 0);
         if (!is_varying) read.insert(token);
         else
-            for (++i; i < tokens.size() && tokens[i].text != ";"; ++i) declared.push_back(&tokens[i]);
+            for (++i; i + 1 < tokens.size() && tokens[i].text != ";"; ++i)
+                if (const std::string_view next = tokens[i + 1].text;
+                    tokens[i].is_word() && (next == "," || next == ";" || next == "["))
+                    declared.push_back(&tokens[i]);
     }
     for (const Token* token : declared)
-        if (token->is_word() && read.contains(token->text) && !IsfTexts::is_of_isf(token->text) &&
-            !is_glsl_word(std::string(token->text)))
-            return token->place();
+        if (read.contains(token->text) && !IsfTexts::is_of_isf(token->text)) return token->place();
     return std::nullopt;
 }
 
@@ -158,10 +158,6 @@ std::optional<IsfFile> parse_isf(const fs::path& path, std::string text, Diagnos
     const auto line_at = [&](std::size_t at) {
         return 1 + int(std::count(file.text.begin(), file.text.begin() + std::ptrdiff_t(at), '\n'));
     };
-    if (const std::size_t nul = file.text.find('\0'); nul != std::string::npos) {
-        diagnostics.error({path.string(), line_at(nul), 1}, "a NUL byte: an ISF file is text");
-        return std::nullopt;
-    }
     if (begin == std::string::npos || end == std::string::npos) {
         diagnostics.error(
             {path.string(), begin == std::string::npos ? 1 : line_at(begin), 1},
@@ -191,8 +187,14 @@ std::optional<IsfFile> read_isf(const fs::path& path, Diagnostics& diagnostics) 
         std::string fault = out_of_bounds(file, file.parent_path());
         std::string text;
         if (fault.empty()) text = read_regular_file(file, kMaxShaderFileBytes, fault);
+        Place place{file.string()};
+        if (const std::size_t nul = text.find('\0'); fault.empty() && nul != std::string::npos) {
+            fault = "a NUL byte: an ISF file is text (remove it)";
+            place.line = 1 + int(std::ranges::count(as_document(text.substr(0, nul)), '\n'));
+            place.column = 1;
+        }
         if (fault.empty()) return text;
-        diagnostics.error({file.string()}, fault);
+        diagnostics.error(place, fault);
         return std::nullopt;
     };
     diagnostics.note_document(path);

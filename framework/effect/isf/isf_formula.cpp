@@ -29,6 +29,10 @@ std::optional<double> usual_value(const IsfFile& file, std::string_view name) {
 }  // namespace
 
 void check_isf_side(const IsfFile& file, const IsfPass& pass, int axis, Diagnostics& diagnostics) {
+    const bool is_checked = std::ranges::any_of(file.passes, [&](const IsfPass& other) {
+        return &other < &pass && other.target == pass.target && other.side[axis] == pass.side[axis];
+    });
+    if (is_checked) return;
     const FormulaResult side =
         evaluate_formula(pass.side[axis], [&](std::string_view name) { return usual_value(file, name); });
     const std::string what =

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <set>
 
 #include "framework/base/text.h"
 #include "framework/effect/glsl_tokens.h"
@@ -80,6 +82,8 @@ std::string IsfNames::unique(const std::string& wanted, bool is_global, const st
 
 std::vector<std::string> names_of_labels(const std::vector<std::string>& labels) {
     std::vector<std::string> names;
+    std::map<std::string, int> next;  // number of each name
+    std::set<std::string> taken;
     for (const std::string& label : labels) {
         std::string name;
         const auto is_plain = [](char c) {
@@ -93,8 +97,9 @@ std::vector<std::string> names_of_labels(const std::vector<std::string>& labels)
         while (name.ends_with('_')) name.pop_back();
         if (name.empty()) name = "value";
         std::string unique = name;
-        for (int number = 2; std::ranges::count(names, unique) > 0; ++number)
-            unique = name + "_" + std::to_string(number);
+        int& number = next.try_emplace(name, 2).first->second;
+        while (taken.contains(unique)) unique = name + "_" + std::to_string(number++);
+        taken.insert(unique);
         names.push_back(unique);
     }
     return names;

@@ -27,8 +27,7 @@ std::string IsfShaders::text(const std::string& stage, const std::string& file_n
     }
     if (const std::string output = texts.output(); stage == "fragment") {
         const std::string color = output.empty() ? "isf_data[0]" : "isf_color(" + output + ")";
-        shader += "#define ISF_COLOR " +
-                  (texts.discards() ? "(isf_is_gone ? vec4(0.0) : " + color + ")" : color) + "\n";
+        shader += "#define ISF_COLOR " + color + "\n";
     }
     // Where no file has these words, the host may put loads from images in the place of fetches, and
     // knows that a shader sees its own pixel alone.

@@ -1,7 +1,6 @@
 #include "framework/effect/isf/isf_text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 #include <vector>
 
@@ -29,6 +28,7 @@ public:
             const std::string_view word = tokens_[i].text;
             depth += word == "{" || word == "(" ? 1 : word == "}" || word == ")" ? -1 : 0;
             if (depth == 0 && is_type(i)) (at(i + 1) == "(" ? global_functions_ : globals_).emplace(word);
+            if (is_type(i)) typed_.emplace(word);
             if (is_declared(i)) declared_.emplace(word);
             if (kSampling.contains(word) && !file_.macros_.contains(std::string(word)) && !directive_[i] &&
                 at(i + 1) != "(")
@@ -51,7 +51,8 @@ public:
     }
     bool sets_coordinates() const {
         for (std::size_t i = 0; i < tokens_.size(); ++i)
-            if (tokens_[i].text.ends_with("_FragNormCoord") && is_set(i)) return true;
+            if (tokens_[i].text.ends_with("_FragNormCoord") && (is_set(i) || directive_[i] || is_argument(i)))
+                return true;
         return false;
     }
     bool is_read_by_pixel(const std::string& name) const {
@@ -63,8 +64,6 @@ public:
     std::string text() {
         for (std::size_t i = 0; i < tokens_.size(); ++i)
             if (tokens_[i].text == "main") edits_.push_back({offset(i), 0, "isf_"});  // for ours around it
-            else if (is_fragment_ && tokens_[i].text == "discard")
-                edits_.push_back({offset(i), tokens_[i].text.size(), "isf_is_gone = true"});
             else if (is_fragment_ && file_.read_here_.contains(std::string(tokens_[i].text)) &&
                      is_read_here(i))
                 edits_.push_back({offset(i), 0, std::string(kHere)});
@@ -89,16 +88,36 @@ private:
                (tokens_[i - 2].text == "IMG_THIS_PIXEL" || tokens_[i - 2].text == "IMG_THIS_NORM_PIXEL");
     }
 
-    /// name = ..., name.x *= ..., name[0] += ...
-    bool is_set(std::size_t i) const {
+    /// The token behind name, name.x or name[0].
+    std::size_t behind(std::size_t i) const {
         std::size_t next = i + 1;
-        if (at(next) == ".") next += 2;
-        else if (at(next) == "[")
+        if (at(next) == ".") return next + 2;
+        if (at(next) == "[")
             while (next < tokens_.size() && at(next++) != "]") {
             }
+        return next;
+    }
+    /// name = ..., name.x *= ..., name[0] += ..., name.y++, --name
+    bool is_set(std::size_t i) const {
+        const std::size_t next = behind(i);
+        const auto is_step = [&](std::size_t at_sign) {
+            return (at(at_sign) == "+" || at(at_sign) == "-") && at(at_sign) == at(at_sign + 1);
+        };
         static const Words kBefore = {"+", "-", "*", "/"};
         return (at(next) == "=" && at(next + 1) != "=") ||
-               (kBefore.contains(at(next)) && at(next + 1) == "=");
+               (kBefore.contains(at(next)) && at(next + 1) == "=") || is_step(next) ||
+               (i > 1 && is_step(i - 2));
+    }
+    /// Whether a function or a macro of the file gets it by itself, and may set it.
+    bool is_argument(std::size_t i) const {
+        const std::string_view next = at(behind(i));
+        if ((before(i) != "(" && before(i) != ",") || (next != ")" && next != ",")) return false;
+        int depth = 0;
+        for (std::size_t open = i; open-- > 1;)
+            if (at(open) == ")") ++depth;
+            else if (at(open) == "(" && depth-- == 0)
+                return typed_.contains(at(open - 1)) || file_.macros_.contains(std::string(at(open - 1)));
+        return false;
     }
 
     struct Edit {
@@ -181,7 +200,7 @@ private:
         }
         if (is_keyword(word)) return !is_keyword_use(i);
         if (is_host_name(word))
-            return !kAliases.contains(word) || globals_.contains(word) || global_functions_.contains(word) ||
+            return !kAliases.contains(word) || typed_.contains(word) ||
                    file_.macros_.contains(std::string(word));
         if (functions_.contains(word)) return is_called;
         return variables_.contains(word) && !is_called;
@@ -222,8 +241,14 @@ private:
         while (i < end && !is_live(i)) ++i;
         if (i == end) return;
         blank(begin, begin);
-        for (i = begin; i < end; ++i)
-            if (at(i + 1) == "=" && at(i + 2) != "=") live_.emplace(tokens_[i].text);
+        for (i = begin; i < end; ++i) {
+            if (at(i + 1) != "=" || at(i + 2) == "=") continue;
+            std::size_t name = i;
+            while (at(name) == "]")
+                while (name > begin && at(name--) != "[") {
+                }
+            if (tokens_[name].is_word()) live_.emplace(at(name));
+        }
     }
 
     /// `end`: of its semicolon.
@@ -294,7 +319,8 @@ private:
     std::vector<Token> tokens_;
     std::vector<bool> directive_, member_;  // of each token
     Words declared_, variables_, functions_;
-    Words globals_, global_functions_, live_;  // live_: constants that a frame sets
+    Words globals_, global_functions_, typed_;  // typed_: behind a type, at any depth
+    Words live_;                                // constants that a frame sets
     std::vector<Edit> edits_;
     std::size_t out_ = 0;
     std::string output_;

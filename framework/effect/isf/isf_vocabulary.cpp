@@ -36,17 +36,12 @@ const Words kQualifiers = {"smooth",  "flat",     "noperspective", "sample",   "
                            "buffer",  "shared",   "coherent",      "volatile", "restrict",  "readonly",
                            "lowp",    "mediump",  "highp",         "layout",   "writeonly", "subroutine",
                            "uniform", "centroid", "invariant"};
-const Words kSampling = {"texture",          "texture2D",
-                         "texture2DRect",    "textureCube",
-                         "texture2DLod",     "textureLod",
-                         "texture2DLodEXT",  "texture2DProj",
-                         "textureProj",      "texelFetch",
-                         "texture2DProjLod", "texture2DRectProj",
-                         "texture2DGrad",    "texture2DGradARB",
-                         "textureProjLod",   "textureProjGrad",
-                         "textureGrad",      "textureOffset",
-                         "textureLodOffset", "texelFetchOffset",
-                         "textureGather",    "dFdy",
+const Words kSampling = {"texture",          "texture2D",         "texture2DRect", "textureCube",
+                         "textureCubeLod",   "textureCubeLodEXT", "texture2DLod",  "textureLod",
+                         "texture2DLodEXT",  "texture2DProj",     "textureProj",   "texelFetch",
+                         "texture2DProjLod", "texture2DRectProj", "texture2DGrad", "texture2DGradARB",
+                         "textureProjLod",   "textureProjGrad",   "textureGrad",   "textureOffset",
+                         "textureLodOffset", "texelFetchOffset",  "textureGather", "dFdy",
                          "dFdyFine",         "dFdyCoarse"};
 const Words kOfIsf = {"TIME",
                       "TIMEDELTA",
@@ -57,6 +52,12 @@ const Words kOfIsf = {"TIME",
                       "isf_FragNormCoord",
                       "vv_FragNormCoord"};
 const Words kAliases = {"isf_FragColor", "isf_FragCoord"};
+
+bool is_name(std::string_view word) {
+    const auto matches = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && !word.starts_with("gl_") &&
+           std::ranges::all_of(word, matches);
+}
 
 bool is_old_word(std::string_view word) {
     return kOldWords.contains(word);

@@ -27,13 +27,15 @@ extern const Words kOfIsf;
 /// Names that some hosts give to an output and a coordinate of GLSL, for files that do not declare them.
 extern const Words kAliases;
 
+/// Letters, digits and _, as GLSL takes them for a name of the file's own.
+bool is_name(std::string_view word);
 /// A word of GLSL 1.20, which nothing can have as its name.
 bool is_old_word(std::string_view word);
 /// Types of GLSL 4.50 that 1.20 has not.
 bool is_new_type(std::string_view word);
-/// A keyword of GLSL 4.50 that GLSL 1.20 already had. No file uses one as a name.
+/// A keyword of GLSL 4.50 that GLSL 1.20 did not have, so that older files may use it as a name.
 bool is_keyword(std::string_view word);
-/// "switch" and its like, of which another word may follow.
+/// "switch" and its like, after which another word may follow.
 bool is_statement_word(std::string_view word);
 /// Names of the host's own text, but for those that ISF has.
 bool is_host_name(std::string_view word);
