@@ -6,6 +6,6 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     Scattered here = scattered_at(p);
     vec2 seen = texelFetch(veil, p, 0).rg;
-    float through = here.in_front + (1.0 - here.in_front - here.behind) * seen.x + here.behind * seen.y;
+    float through = seen_before(here, seen.x) + here.behind * seen.y;
     out_color = vec4(through * here.density * light_of_source, 0.0);
 }

@@ -17,8 +17,10 @@ Scattered scattered_at(ivec2 p) {
     return Scattered(clamp(pixel_coc - source_coc, 0.0, 1.0), clamp(source_coc - pixel_coc, 0.0, 1.0), density);
 }
 
-// Density of light in front of what the pixel shows, or at its depth.
+// The share that is seen of light in front of what the pixel shows, or at its depth; `seen`: of light at its depth.
+float seen_before(Scattered here, float seen) { return here.in_front + (1.0 - here.in_front - here.behind) * seen; }
+
 float density_before(ivec2 p) {
     Scattered here = scattered_at(p);
-    return here.density * (here.in_front + (1.0 - here.in_front - here.behind) * texelFetch(veil, p, 0).r);
+    return here.density * seen_before(here, texelFetch(veil, p, 0).r);
 }
