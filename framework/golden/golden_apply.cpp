@@ -33,8 +33,12 @@ std::string why_not(const GoldenDecision& decision, const GoldenApplyOptions& op
     if (options.seen_bytes && options.seen_bytes(decision.test, image.name) !=
                                   read_text_file(image.file, ErrorKind::output, std::uintmax_t(1) << 30))
         return kOtherPicture;
-    const auto is_seen = [&](const ApprovedImage& other) { return file_hash(other.file) == seen->reference; };
-    if (seen->reference.empty() ? !approved.empty() : std::ranges::none_of(approved, is_seen))
+    // The new one may be there already: another reviewer of the same report wrote it a moment ago.
+    const auto is_seen = [&](const ApprovedImage& other) {
+        const std::string hash = file_hash(other.file);
+        return hash == seen->reference || hash == seen->test;
+    };
+    if ((!seen->reference.empty() || !approved.empty()) && std::ranges::none_of(approved, is_seen))
         return "another image was approved since the review; run the suite again and review it";
     return "";
 }

@@ -102,6 +102,16 @@ TEST_F(GoldenApply, KeepsAGoldenThatSomeoneElseHasApprovedSinceTheReview) {
     EXPECT_EQ(contents(folder_ / "goldens"), theirs);
 }
 
+TEST_F(GoldenApply, TakesTheSameDecisionsTwiceAsReviewersWhoWriteAtOnceDo) {
+    EXPECT_EQ(run({"--report", "report"}).exit_code, 2);
+    write_decisions({seen("corner"), seen("lens")});
+    EXPECT_EQ(apply({"decisions.json"}).exit_code, 0);
+    const auto applied = contents(folder_ / "goldens");
+    const CommandResult again = apply({"decisions.json"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(contents(folder_ / "goldens"), applied);
+}
+
 TEST_F(GoldenApply, WritesNothingWhereOneDecisionIsOfSomeoneWhoMayNot) {
     write_decisions(
         {{{"case", "corner"}, {"decision", "approve"}, {"by", "Ada <ada@example.org>"}},

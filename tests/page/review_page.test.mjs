@@ -37,7 +37,7 @@ async function reviewed(suite, reviewer) {
 }
 async function openReview(address, options) {
   const page = await openServed(browser, address, options);
-  await page.locator(".review").waitFor();
+  await page.locator(".review").waitFor(); // laid out once the decisions are there
   return page;
 }
 const decisionsOf = (suite) => JSON.parse(readFileSync(join(suite, "report/decisions.json"))).decisions;
@@ -204,6 +204,14 @@ test("goes on where it ended, and counts no decision about other images", async 
   const later = await openReview(third.address);
   assert.match(await groupOf(later, names[0]).innerText(), /Was approved by Ada.* for other images/);
   assert.match(await groupOf(later, names[1]).innerText(), /Rejected by Ada/);
+  // A note that is written and not sent is not lost in silence.
+  const note = groupOf(later, names[2]).getByRole("textbox");
+  await note.click();
+  await note.pressSequentially("too da");
+  const asked = new Promise((done) => later.once("dialog", (dialog) => dialog.dismiss().then(() => done(dialog.type()))));
+  await later.evaluate(() => void setTimeout(() => location.reload()));
+  assert.equal(await asked, "beforeunload");
+  assert.equal(await note.inputValue(), "too da");
   await later.context().close();
   await third.end();
 });

@@ -101,10 +101,18 @@ class Review {
     this.pending = new Set(); // names whose decision has no answer yet: a second click is about the same state
   }
   async start() {
-    document.getElementById("head").append(this.bar());
-    for (const { test, node } of this.page.cards) if (this.byName.has(test.name)) node.firstChild.after(this.row(test));
-    await this.refreshed();
+    const bar = this.bar(),
+      rows = this.page.cards.filter(({ test }) => this.byName.has(test.name));
+    for (const { test } of rows) this.row(test);
+    await this.refreshed(); // before anything can be clicked
+    document.getElementById("head").append(bar);
+    for (const { test, node } of rows) node.firstChild.after(this.rows.get(test.name).node);
     if (isServed) setInterval(() => document.hidden || this.refreshed(false), POLL_MS);
+    addEventListener("beforeunload", (event) => this.hasOpenNote() && event.preventDefault());
+  }
+  /** Whether a note is written whose decision is not made: a reload would lose it. */
+  hasOpenNote() {
+    return [...this.rows.values()].some(({ note }) => !note.hidden && note.value.trim());
   }
   /** Shows what is decided; without `always` only where something is new, since hundreds of rows take long. */
   async refreshed(always = true) {
