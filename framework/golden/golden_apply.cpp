@@ -33,7 +33,7 @@ std::string why_not(const GoldenDecision& decision, const GoldenApplyOptions& op
     if (options.seen_bytes && options.seen_bytes(decision.test, image.name) !=
                                   read_text_file(image.file, ErrorKind::output, std::uintmax_t(1) << 30))
         return kOtherPicture;
-    // The new one may be there already: another reviewer of the same report wrote it a moment ago.
+    // Another reviewer of the same report may have written the new one since approve compared the bits.
     const auto is_seen = [&](const ApprovedImage& other) {
         const std::string hash = file_hash(other.file);
         return hash == seen->reference || hash == seen->test;

@@ -102,7 +102,7 @@ TEST_F(GoldenApply, KeepsAGoldenThatSomeoneElseHasApprovedSinceTheReview) {
     EXPECT_EQ(contents(folder_ / "goldens"), theirs);
 }
 
-TEST_F(GoldenApply, TakesTheSameDecisionsTwiceAsReviewersWhoWriteAtOnceDo) {
+TEST_F(GoldenApply, TakesTheSameDecisionsTwice) {
     EXPECT_EQ(run({"--report", "report"}).exit_code, 2);
     write_decisions({seen("corner"), seen("lens")});
     EXPECT_EQ(apply({"decisions.json"}).exit_code, 0);
