@@ -6,8 +6,18 @@
 
 const float kBurleyPi = 3.14159265358979;
 
-float burley_sum(float r, float d) { return exp(-r / d) + exp(-r / (3.0 * d)); }
-vec3 burley_sum(float r, vec3 d) { return exp(-r / d) + exp(-r / (3.0 * d)); }
+// The one exponential of R(r), exp(-r / (3 d)); the other, exp(-r / d), is its cube.
+float burley_far(float r, float d) { return exp(-r / (3.0 * d)); }
+vec3 burley_far(float r, vec3 d) { return exp(-r / (3.0 * d)); }
+
+float burley_sum(float r, float d) {
+    float far = burley_far(r, d);
+    return far * far * far + far;
+}
+vec3 burley_sum(float r, vec3 d) {
+    vec3 far = burley_far(r, d);
+    return far * far * far + far;
+}
 
 // R(r): share of the light per area at distance r, and so the density, per area, of samples whose radii are
 // burley_radius(). Infinite at r = 0.
@@ -18,8 +28,14 @@ vec3 burley_profile(float r, vec3 d) { return burley_sum(r, d) / (8.0 * kBurleyP
 float burley_radial_density(float r, float d) { return burley_sum(r, d) / (4.0 * d); }
 
 // Share that comes out farther away than r, 1 - CDF(r), to full relative precision.
-float burley_beyond(float r, float d) { return 0.25 * exp(-r / d) + 0.75 * exp(-r / (3.0 * d)); }
-vec3 burley_beyond(float r, vec3 d) { return 0.25 * exp(-r / d) + 0.75 * exp(-r / (3.0 * d)); }
+float burley_beyond(float r, float d) {
+    float far = burley_far(r, d);
+    return (0.25 * far * far + 0.75) * far;
+}
+vec3 burley_beyond(float r, vec3 d) {
+    vec3 far = burley_far(r, d);
+    return (0.25 * far * far + 0.75) * far;
+}
 
 // Share that comes out within r: the CDF.
 float burley_within(float r, float d) { return 1.0 - burley_beyond(r, d); }

@@ -1,9 +1,9 @@
 // The average over frames within the step: that of what the two blurs of separable scattering leave over. The blurs have no noise
 // and are of this frame's light, so that only what they are wrong by lags behind light that moves.
 #include <scattering/facet.glsl>
-#include <scattering/gathered.glsl>
 #include "blur_frames.glsl"
 #include "past.glsl"
+#include "shares.glsl"
 
 // Beyond this a count of frames decides nothing.
 const float kMostFrames = 4096.0;
@@ -30,8 +30,7 @@ vec3 unfilled(vec3 light, Gathered sums) { return light * filling(sums.share / s
 
 // What the average of the frame before is in this frame's light, of which `now` is. `change`: change of the blurred light, divided by the greater of both values.
 Gathered carried(ivec2 p, ivec2 q, Gathered now, out float change) {
-    Gathered then = Gathered(texelFetch(guided_prev, q, 0).rgb, texelFetch(guided_share_prev, q, 0).rgb,
-                             texelFetch(guided_whole_prev, q, 0).rgb);
+    Gathered then = with_shares(texelFetch(guided_prev, q, 0).rgb, texelFetch(guided_shares_prev, q, 0));
     vec3 smooth_now = texelFetch(blurred, p, 0).rgb, smooth_then = texelFetch(blurred_prev, q, 0).rgb;
     vec3 changes = abs(smooth_now - smooth_then) / max(max(smooth_now, smooth_then), 1e-20);
     change = max(changes.r, max(changes.g, changes.b));
@@ -58,7 +57,7 @@ Guided guided_light(ivec2 p, Gathered now, float count, ivec2 q, bool was_seen) 
 }
 
 void keep_average(Guided now) {
-    out_guided = vec4(now.sums.light, now.frames);
-    out_guided_share = vec4(now.sums.share, now.residual.x);
-    out_guided_whole = vec4(now.sums.whole, now.residual.y);
+    out_guided_shares = kept_shares(now.sums, now.residual);
+    // Shares are kept rounded, but the light that they come to is not.
+    out_guided = vec4(unfilled(filled(now.sums), with_shares(vec3(0.0), out_guided_shares)), now.frames);
 }

@@ -1,4 +1,6 @@
 // Where a pixel's surface was in the frame before.
+#include "kept_key.glsl"
+#include "shares.glsl"
 
 vec2 past_place() {
     vec2 motion = vec2(0.0);
@@ -14,7 +16,7 @@ ivec2 pixel_at(vec2 place) { return clamp(ivec2(floor(place)), ivec2(0), frame.s
 // part in each frame, were it always taken from the pixel's middle.
 vec2 residual_at(ivec2 pixel) {
 #if GUIDING
-    return vec2(texelFetch(guided_share_prev, pixel, 0).a, texelFetch(guided_whole_prev, pixel, 0).a);
+    return residual_of(texelFetch(guided_shares_prev, pixel, 0));
 #else
     return vec2(0.0);
 #endif
@@ -26,6 +28,3 @@ bool past_pixel(out ivec2 pixel) {
     pixel = pixel_at(place - residual_at(pixel_at(place)));
     return frame.history_valid && all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(frame.size)));
 }
-
-// An object's key as a float, exact: never 0 for what scatters; keys that differ by 2^24 are taken for one object.
-float key_of(uint key) { return key == 0u ? 0.0 : float(key & 0xFFFFFFu) + 1.0; }

@@ -15,14 +15,14 @@ void main() {
     ViewLines lines = view_lines();
     Facet here = read_facet(lines, p);
     keep_nothing();
-    out_epoch = vec2(0.0);
+    out_epoch = 0.0;
     out_irradiance = texelFetch(irradiance, p, 0);
     if (here.key == 0u) return;
     vec4 past = texelFetch(history_prev, q, 0);
     Plan plan_here = planned(lines, here, inside, past, texelFetch(epoch_prev, q, 0).r);
     Gathered sums = drawn(lines, p, here, plan_here.count, plan_here.each);
     vec3 scattered = mix(here.light, filled(sums), plan_here.scattered);
-    out_epoch = vec2(plan_here.each, plan_here.count);
+    out_epoch = plan_here.each;
     keep_moments(here, q, past, plan_here.known, plan_here.count, viewed(scattered));
 #if GUIDING
     Guided now = guided_light(p, sums, plan_here.count, q, plan_here.known);

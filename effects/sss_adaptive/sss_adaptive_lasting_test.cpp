@@ -125,7 +125,7 @@ TEST(SssAdaptiveLasting, TakesFewSamplesAgainOnceItIsNoLongerDarkAround) {
 TEST(SssAdaptiveLasting, HasNumbersUpToTheHorizonOfAPlane) {
     for (int i = 0; i < 24; ++i) {
         const double horizon_px = 89.5 + 0.025 * i;
-        LookRunner look(step("sss_adaptive", "", 30), gpu::test_backend(), {"sss_adaptive.guided_whole"});
+        LookRunner look(step("sss_adaptive", "", 30), gpu::test_backend(), {"sss_adaptive.guided"});
         Capture capture = at_frame(1, [](int, int, int) { return 1.0f; });
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) {
@@ -136,7 +136,7 @@ TEST(SssAdaptiveLasting, HasNumbersUpToTheHorizonOfAPlane) {
                 capture.images.at("object_id").uint_at(x, y, 0) = is_there ? 1 : 0;
             }
         const FrameResult result = look.run(capture);
-        for (const float value : result.taps.at("sss_adaptive.guided_whole").floats())
+        for (const float value : result.taps.at("sss_adaptive.guided").floats())
             ASSERT_TRUE(std::isfinite(value)) << "horizon at " << horizon_px;
     }
 }

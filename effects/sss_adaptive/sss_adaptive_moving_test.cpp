@@ -275,15 +275,16 @@ TEST(SssAdaptiveMoving, LosesLittleOfAHighlightThatGoesWithTheLightToTaa) {
 /// Frames reuse what nothing changed; whatever changes, the blurs are those of a frame on its own.
 TEST(SssAdaptiveMoving, HasTheBlursOfEachFrameWhateverChangedSinceTheOneBefore) {
     LookRunner look(step("sss_adaptive"), gpu::test_backend(), {"sss_adaptive.blurred"});
-    for (int frame = 1; frame <= 9; ++frame) {
+    for (int frame = 1; frame <= 10; ++frame) {
         Capture capture = captured(bar_at(0), 1);
         capture.header.frame = frame;
-        // At rest, a pixel in a corner, one in the middle, at rest, depth, the lens, an object, at rest.
+        // At rest, a pixel in a corner, one in the middle, at rest, depth, the lens, an object, at rest, two pixels in turn.
         if (frame == 2) capture.images.at("irradiance").at(1, 1, 0) = 5;
         if (frame == 3 || frame == 4) capture.images.at("irradiance").at(30, 16, 1) = 5;
         if (frame == 5) capture.images.at("depth").at(40, 20, 0) = 0.9f;
         if (frame == 6) capture.header.camera.set("focal_length", 70);
         if (frame >= 7) capture.images.at("object_id").uint_at(20, 8, 0) = 7;
+        if (frame >= 9) capture.images.at("irradiance").at(frame == 9 ? 33 : 35, 20, 2) = 4;
         const Image blurred = look.run(capture).taps.at("sss_adaptive.blurred"),
                     fresh = scattered(step("sss_separable", R"("samples": 25)"), capture);
         int off = 0;

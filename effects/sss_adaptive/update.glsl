@@ -34,7 +34,8 @@ void keep_moments(Facet here, ivec2 q, vec4 past, bool known, float count, float
 void keep_nothing() {
     out_history = vec4(0.0);
 #if GUIDING
-    out_guided = out_guided_share = out_guided_whole = vec4(0.0);
+    out_guided = vec4(0.0);
+    out_guided_shares = uvec4(0u);
 #elif CONTROL_VARIATE == CONTROL_VARIATE_ONLINE
     out_covariance = vec4(0.0);
 #endif

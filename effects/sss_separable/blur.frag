@@ -9,7 +9,7 @@
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    Lit here = unpack(texelFetch(SOURCE, p, 0));
+    Lit here = lit_at(p);
     vec3 blurred = blurred_light(view_lines(), p, here);
 #if ALONG_ROWS
     out_rows = pack(Lit(blurred, here.depth_m, here.key));

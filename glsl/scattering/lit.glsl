@@ -1,5 +1,5 @@
-// Light, depth and object of a pixel in one texel, so that a tap is one fetch. Light keeps 12 bits of its mantissas: to
-// 1.2e-4 of itself.
+// Light, depth and object of a pixel, and how they are packed into one texel. Light keeps 12 bits of its mantissas: to 1.2e-4 of
+// itself.
 
 struct Lit {
     vec3 light;

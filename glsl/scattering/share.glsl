@@ -60,8 +60,9 @@ vec3 share_of(ScatteringProfileRow profile, Facet here, Facet there) {
 #if SCATTERING_PROFILE_IS_BURLEY
     vec3 per = 1.0 / profile.d;
     float area = square / 24.0;
-    vec3 near = exp(-r * per) * (1.0 + area * (per * per + per / r + 1.0 / (r * r)));
-    vec3 far = exp(-r * per / 3.0) * (1.0 + area * (per * per / 9.0 + per / (3.0 * r) + 1.0 / (r * r)));
+    vec3 falls = exp(-r * per / 3.0), own = per / 3.0;
+    vec3 near = falls * falls * falls * (1.0 + area * (per * (per + mean) + mean * mean));
+    vec3 far = falls * (1.0 + area * (own * (own + mean) + mean * mean));
     vec3 share = nearness / (8.0 * kBurleyPi) * per * (near + far);
 #else
     vec3 share = nearness / (2.0 * kBurleyPi) * scattering_profile_radial(profile, r);

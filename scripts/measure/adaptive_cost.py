@@ -12,12 +12,13 @@ from measure.tree import AFTERSHADE, ROOT, Document, command
 SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
 FRAMES, SETTLED = 32, 24  # times are the least of the frames after SETTLED
 COLUMNS = {"setup": ["scatters", "scattering_tiles", "surface", "unscattered"],
-           "blurs": ["kernel", "settings", "lit_pixels", "tile_state", "stale_rows", "stale_columns", "rows", "columns"],
-           "sampling": ["tile_light", "scatter", "gather"]}
+           "blurs": ["kernel", "settings", "tile_state", "stale_rows", "stale_row_tiles", "stale_columns", "stale_column_tiles",
+                     "rows_before", "rows", "blurred_before", "columns"],
+           "sampling": ["scatter", "gather"]}
 FIXED = ("`sss_burley`, 64 samples", "sss_burley", {"samples": 64})
 LONG = {"guiding_weight": 0.05}
-FEW = LONG | {"min_samples": 2, "target_variance": 0.012}
-WAYS: list[Technique] = [FIXED, ("adaptive", "sss_adaptive", LONG), ("adaptive, `min_samples` 2, `target_variance` 0.012", "sss_adaptive", FEW)]
+FEW = LONG | {"min_samples": 2, "target_variance": 0.05}
+WAYS: list[Technique] = [FIXED, ("adaptive", "sss_adaptive", LONG), ("adaptive, `min_samples` 2, `target_variance` 0.05", "sss_adaptive", FEW)]
 
 
 def passes_of(told: Any, effect: str) -> dict[str, float]:

@@ -1,9 +1,0 @@
-#version 450 core
-#include <pass>
-#include <scattering/lit.glsl>
-
-void main() {
-    ivec2 p = ivec2(gl_FragCoord.xy);
-    vec4 here = texelFetch(surface, p, 0);
-    out_light = pack(Lit(here.rgb, here.a, texelFetch(facet, p, 0).r));
-}
