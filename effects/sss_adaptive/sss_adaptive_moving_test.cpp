@@ -278,7 +278,8 @@ TEST(SssAdaptiveMoving, HasTheBlursOfEachFrameWhateverChangedSinceTheOneBefore) 
     for (int frame = 1; frame <= 10; ++frame) {
         Capture capture = captured(bar_at(0), 1);
         capture.header.frame = frame;
-        // At rest, a pixel in a corner, one in the middle, at rest, depth, the lens, an object, at rest, two pixels in turn.
+        // At rest, a pixel in a corner, one in the middle, at rest, depth, the lens, an object, at rest, two
+        // pixels in turn.
         if (frame == 2) capture.images.at("irradiance").at(1, 1, 0) = 5;
         if (frame == 3 || frame == 4) capture.images.at("irradiance").at(30, 16, 1) = 5;
         if (frame == 5) capture.images.at("depth").at(40, 20, 0) = 0.9f;

@@ -3,6 +3,8 @@ import os
 from pathlib import Path
 from typing import Any
 
+import OpenEXR
+
 from measure.measures import Array, luminance_psnr_db, scale_of
 from measure.pages import Rows
 from measure.sss_sequences import run, scene_profile, still
@@ -10,6 +12,7 @@ from measure.sss_techniques import WORK, Technique, incoming, scatter, scatterin
 from measure.tree import AFTERSHADE, ROOT, Document, command
 
 SCENE, SIZE = "skin_front", os.environ.get("SIZE", "1920x1080")
+READ = {"R", "G", "B", "A", "irradiance", "Z", "object_id", "velocity"}
 FRAMES, SETTLED = 32, 24  # times are the least of the frames after SETTLED
 COLUMNS = {"setup": ["scatters", "scattering_tiles", "surface", "unscattered"],
            "blurs": ["kernel", "settings", "tile_state", "stale_rows", "stale_row_tiles", "stale_columns", "stale_column_tiles",
@@ -30,12 +33,23 @@ def passes_of(told: Any, effect: str) -> dict[str, float]:
     return {name: min(ms) for name, ms in times.items()}
 
 
+def uncompressed(file: Path) -> Path:
+    """The channels that the effects read, uncompressed: to inflate all of the next frame while one is drawn takes one of two cores."""
+    with OpenEXR.File(str(file), separate_channels=True) as source:
+        part = source.parts[0]
+        channels = {name: part.channels[name].pixels for name in part.channels if name.split(".")[0] in READ}
+        plain = file.parent / "uncompressed" / "gbuffer_0001.exr"
+        plain.parent.mkdir(exist_ok=True)
+        OpenEXR.File(part.header | {"compression": OpenEXR.NO_COMPRESSION}, channels).write(str(plain))
+    return plain
+
+
 def cost() -> Rows:
     folder = WORK / f"{SCENE}_{SIZE}"
     if not (folder / "capture.json").exists():
         command([AFTERSHADE, "render", ROOT / "scenes" / SCENE, "-o", folder, "--size", SIZE, "--frames", "1", "--quiet"])
     file, profile = folder / "gbuffer_0001.exr", scene_profile(SCENE)
-    sequence = still(file, "native", FRAMES)
+    sequence = still(uncompressed(file), "native", FRAMES)
     where = scattering(file)
     scale = scale_of(incoming(file), where)
     reference = scatter(sequence, WORK / f"{SCENE}_{SIZE}_ref.exr", ("", "sss_burley", {"samples": 4096}), profile, {"object_ids": [1]}, ["--frames", "1"])
