@@ -193,6 +193,15 @@ TEST(TileLists, NeedSomethingAroundTheTiles) {
               Lines{fault + ", or give it 'clear'"});
 }
 
+TEST(TileLists, DoNotReadWhatTheyWriteInParts) {
+    EXPECT_EQ(faults_of_target(R"("clear": 0)", R"("target"], "reads": ["target")"),
+              Lines{"pass 'x': reads and writes 'target', but draws over parts of it alone: write another "
+                    "texture, or name the pass's 'reads' without it (by default, each branch of an #if "
+                    "counts)"});
+    EXPECT_EQ(faults_of_target(R"("history": true, "clear": 0)", R"("target"], "reads": ["target.prev")"),
+              Lines{});
+}
+
 TEST(TileLists, LieOnTexturesByTheirScale) {
     const auto faults = [](const std::string& on) {
         const EffectFolder folder(demo_manifest(

@@ -128,11 +128,14 @@ private:
             state_.fault(write.place, "blends into '" + write.name + "' before any pass has written it");
     }
 
+    bool draws_parts() const {
+        return pass_->draw() && pass_->draw()->instances && !pass_->draw()->instances->covers;
+    }
+
     /// Instances and tiles leave the rest of a target as it was, which must be something.
     void check_base(const WriteSpec& write) {
         const TextureSpec* texture = manifest_.find_texture(write.name);
-        const bool is_part = pass_->draw() && pass_->draw()->instances && !pass_->draw()->instances->covers;
-        if (!is_part || state_.filled.contains(write.name) || (texture && texture->partial)) return;
+        if (!draws_parts() || state_.filled.contains(write.name) || (texture && texture->partial)) return;
         state_.fault(write.place,
                      "draws over parts of '" + write.name +
                          "' before anything has filled the rest: copy an input to it (a pass of kind "
@@ -147,6 +150,11 @@ private:
         const auto read = std::find_if(pass_->reads.begin(), pass_->reads.end(), same);
         if (read == pass_->reads.end()) return;
         const std::string both = "reads and writes '" + write.name + "'";
+        if (draws_parts() && !read->level)
+            state_.fault(write.place,
+                         both +
+                             ", but draws over parts of it alone: write another texture, or name the "
+                             "pass's 'reads' without it (by default, each branch of an #if counts)");
         if (blend_of(*pass_) != gpu::Blend::none) state_.fault(write.place, both + " while it blends");
         if (texture.layers > 1) state_.fault(write.place, both + ", of which it writes one layer only");
         else if (texture.auto_mips) state_.fault(write.place, both + ", whose 'mips' are automatic");
