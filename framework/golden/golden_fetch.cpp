@@ -50,8 +50,15 @@ void add_wanted(const GoldenCase& test, Wanted& wanted, UnfetchedImages& unfetch
 /// The bytes were verified; the file may be another by now.
 void place(const std::string& bytes, const std::string& digest, const Wanted& wanted) {
     const auto [first, last] = wanted.equal_range(digest);
-    for (auto image = first; image != last; ++image)
-        write_text_file(path_below(image->second.folder, image->second.name), bytes);
+    for (auto image = first; image != last; ++image) {
+        try {
+            write_text_file(path_below(image->second.folder, image->second.name), bytes);
+        } catch (const Error& error) {
+            throw Error(error.kind(), std::string(error.what()) +
+                                          " (images of the store are written beside their sidecars: of a "
+                                          "read-only checkout, run in a copy)");
+        }
+    }
 }
 
 /// Copies what the cache has, and takes it out of `wanted`.

@@ -67,6 +67,14 @@ TEST_F(GoldenStoreFaults, OfTheFolderOfTheStoreApproveNothingAndNameIt) {
     EXPECT_TRUE(contents(folder_ / "goldens").empty()) << "nothing half";
 }
 
+TEST_F(GoldenStoreFaults, OfAnImagesPlaceNameItAndSayWhatToDo) {
+    fs::create_directories(corner_ / "in the way");  // fails as a read-only checkout does, also for root
+    const CommandResult result = with_cache({"run", "golden.json"}, "cache");
+    EXPECT_EQ(result.exit_code, 4) << result.err;
+    EXPECT_NE(result.err.find("goldens/corner.color.0001.exr: cannot"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("of a read-only checkout, run in a copy"), std::string::npos) << result.err;
+}
+
 TEST_F(GoldenStoreFaults, OfItsAddressPrintNoPassword) {
     for (const char* store :
          {"http://ada:s3cret@host/x", "https://host/x?token=s3cret", "rclone:a:s3cret@host"}) {
