@@ -67,7 +67,7 @@ TEST_F(GoldenStoreFaults, OfTheFolderOfTheStoreApproveNothingAndNameIt) {
     EXPECT_TRUE(contents(folder_ / "goldens").empty()) << "nothing half";
 }
 
-TEST_F(GoldenStoreFaults, OfAnImagesPlaceNameItAndSayWhatToDo) {
+TEST_F(GoldenStoreFaults, OfAnImagesPlaceNameItAndTheRemedy) {
     fs::create_directories(corner_ / "in the way");  // fails as a read-only checkout does, also for root
     const CommandResult result = with_cache({"run", "golden.json"}, "cache");
     EXPECT_EQ(result.exit_code, 4) << result.err;
